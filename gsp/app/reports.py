@@ -167,16 +167,30 @@ def end_with_server() -> None:
         os._exit(1)
 
 
-def note(text: str, seconds: int | None = None) -> str:
-    """Return a page with one sentence; after some seconds it requests the report by POST."""
+def note(
+    text: str, seconds: int | None = None, *, title: str = "gsp: report", link: str = ""
+) -> str:
+    """Return a page with one sentence.
+
+    Parameters
+    ----------
+    text, title : str
+    seconds : int or None
+        After which it requests the report by POST; None for never.
+    link : str
+        Text of a link to the tool, "" for none.
+    """
+    after = f"<p><a href='/'>{escape(link)}</a></p>" if link else ""
     form = (
         "<form method=post><noscript><button>Compute it</button></noscript></form>"
         f"<script>setTimeout(() => document.forms[0].submit(), {1000 * (seconds or 0)})</script>"
     )
     return (
-        "<!doctype html><html lang=en><head><meta charset=utf-8><title>gsp: report</title>"
+        "<!doctype html><html lang=en><head><meta charset=utf-8>"
+        f"<title>{escape(title)}</title>"
         "<meta name=viewport content='width=device-width, initial-scale=1'>"
         "<style>body{font:18px/1.5 system-ui,sans-serif;max-width:40rem;margin:20vh auto;"
         "padding:0 1rem;color:#1f2933}</style></head>"
-        f"<body><p role=status>{escape(text)}</p>{'' if seconds is None else form}</body></html>"
+        f"<body><p role=status>{escape(text)}</p>{after}{'' if seconds is None else form}"
+        "</body></html>"
     )

@@ -8,13 +8,14 @@ from collections.abc import Callable
 from contextlib import suppress
 
 import uvicorn
-from fastapi import FastAPI, Request
+from fastapi import FastAPI, Request, Response
+from fastapi.responses import HTMLResponse
 from nicegui import ui
 
 from gsp.app import api
 from gsp.app.guard import WILDCARDS, Application, Guard, Policy, is_loopback
 from gsp.app.page.layout import build
-from gsp.app.reports import add_reports
+from gsp.app.reports import add_reports, note
 from gsp.app.searches import Searches
 from gsp.app.state.reading import compile_slow
 from gsp.errors import GspError, InvalidInput, expected
@@ -27,6 +28,7 @@ LARGEST_MESSAGE, SECONDS_TO_END = 1 << 20, 2
 # half of it, so that one on a busy machine is not dropped.
 SECONDS_TO_RECONNECT = 15.0
 TITLE = "gsp · platform analysis"
+NO_PAGE = "There is no page at this address."
 
 
 def serve(design: Design, host: str, port: int, say: Callable[[str], object] = print) -> None:
@@ -106,11 +108,14 @@ def application(design: Design, searches: Searches) -> FastAPI:
     return app
 
 
-def page(design: Design, searches: Searches) -> Callable[[Request], None]:
-    """Return the function that builds a page for each client."""
+def page(design: Design, searches: Searches) -> Callable[[Request], Response | None]:
+    """Return the function that builds a page for each client; NiceGUI calls it for all paths."""
 
-    def root(request: Request) -> None:
+    def root(request: Request) -> Response | None:
+        if request.url.path not in ("", "/"):
+            return HTMLResponse(note(NO_PAGE, title="gsp: no such page", link="Open the tool"), 404)
         build(design, searches, request.query_params.multi_items())
+        return None
 
     return root
 

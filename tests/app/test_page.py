@@ -14,6 +14,7 @@ import pytest
 import gsp
 from gsp.app import searches as searching
 from gsp.app.state import choices, links
+from gsp.app.state import session as sessions
 from gsp.app.state.reading import COMPILED, compile_slow
 from gsp.app.state.session import started
 from tests.app.test_state import figure_42
@@ -290,7 +291,13 @@ def test_the_dialogs_of_figures_41_and_42():
         page.click("OK: this platform")
         assert "Top size: expected a finite number" in page.html
         assert page.fact("det J") == "-2674321"
+        # The message follows the fields: what is mended is not in it.
+        page.choose("Base size", "-1")
         page.choose("Top size", "15")
+        assert "Top size" not in page.html
+        assert "size of the base: expected a number" in page.html
+        page.choose("Base size", "30")
+        assert "size of the base" not in page.html
         page.click("OK: this platform")
         assert pose_of(page).position == pytest.approx([0.0, 0.0, 15.0])
         page.click("Jacobian matrix")
@@ -427,8 +434,16 @@ def test_indices_and_plots():
         assert len(set(texts)) == len(texts) >= 3
         cells = {tuple(cell[:2]): cell[2] for cell in field.options["series"][0]["data"]}
         grid = np.array([[cells[i, j] for j in range(31)] for i in range(31)])
+        # Axes have coordinates; a cell has its value in its middle.
+        axes = [field.options[name][1] for name in ("xAxis", "yAxis")]
+        assert [axis["type"] for axis in axes] == ["value", "value"]
+        first, last = (np.array([axis[end] for axis in axes]) for end in ("min", "max"))
+        size = sessions.started(design).size
+        assert 0.5 * (first + last) == pytest.approx(design.home.position[:2], abs=1e-9)
+        assert last - first == pytest.approx([2.0 * size * 31 / 30] * 2)
         for one, text in zip(labels["data"], texts, strict=True):
-            (i, j), (a, b) = np.divmod(one["value"], 1.0)
+            steps = 31.0 * (np.array(one["value"]) - first) / (last - first) - 0.5
+            (i, j), (a, b) = np.divmod(steps.round(3), 1.0)
             i, j = int(i), int(j)
             ends = grid[i : i + 2, j : j + 2][: 1 + (a > 0), : 1 + (b > 0)]
             assert ends.min() - 1e-3 <= text <= ends.max() + 1e-3

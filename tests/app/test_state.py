@@ -79,16 +79,40 @@ def test_the_dialog_of_figure_42():
             ({"kind": "hexagon", "percent": 20.0, "separation": way},) * 2 + (name,)
             for way, name in ((choices.CENTRE, "lee-centre"), (choices.SIDE, "lee-side"))
         ),
+        ({"kind": "hexagon", "percent": 20.0, "separation": choices.SIDE}, {}, "lee-side-edges"),
+        (
+            {"kind": "hexagon", "percent": 20.0},
+            {"kind": "hexagon", "percent": 30.0, "separation": choices.CENTRE},
+            "lee-edges-centre",
+        ),
     ],
-    ids=["3-3", "3-6", "6-3", "6-6", "centre", "side"],
+    ids=["3-3", "3-6", "6-3", "6-6", "centre", "side", "side-triangle", "edges-centre"],
 )
 def test_home_of_the_dialog_is_the_best_height(top, base, family):
-    """No neighbouring height has a larger |det J|."""
+    """No neighbouring height or twist has a larger |det J|."""
     design = choices.configured(choices.Half(size=1.0, **top), choices.Half(size=2.0, **base))
     assert design.name.startswith(family)
-    heights = design.home.moved([[0, 0, h, 0, 0, 0] for h in (-1e-3, 0.0, 1e-3)])
-    values = np.abs(np.linalg.det(design.at(heights).jacobian))
-    assert values[1] > max(values[0], values[2]) > 0.0
+    for axis in (2, 5):
+        near = design.home.moved([np.eye(6)[axis] * h for h in (-1e-3, 0.0, 1e-3)])
+        values = np.abs(np.linalg.det(design.at(near).jacobian))
+        assert values[1] > max(values[0], values[2]) > 0.0
+
+
+@pytest.mark.parametrize("top", choices.SEPARATIONS)
+@pytest.mark.parametrize("base", choices.SEPARATIONS)
+def test_top_and_base_of_the_dialog_are_independent(top, base):
+    """Each half has the points that it has with the same separation on both."""
+    halves = [("platform", top, 15.0, 12.5), ("base", base, 30.0, 40.0)]
+    columns = [
+        choices.Half(kind="hexagon", size=size, separation=way, percent=percent)
+        for _, way, size, percent in halves
+    ]
+    design = choices.configured(*columns)
+    for side, way, size, percent in halves:
+        both = choices.Half(kind="hexagon", size=size, separation=way, percent=percent)
+        alone = choices.configured(both, both)
+        points = f"{side}_points"
+        assert (getattr(design, points) == getattr(alone, points)).all()
 
 
 @pytest.mark.parametrize(
@@ -98,8 +122,7 @@ def test_home_of_the_dialog_is_the_best_height(top, base, family):
         ({"size": float("nan")}, {}),
         ({"kind": "square"}, {}),
         ({"kind": "hexagon", "percent": 101.0}, {}),
-        ({"kind": "hexagon", "separation": choices.SIDE}, {"kind": "hexagon"}),
-        ({"kind": "hexagon", "separation": choices.SIDE, "percent": 10.0}, {}),
+        ({"kind": "hexagon", "separation": "along no edge"}, {"kind": "hexagon"}),
     ],
 )
 def test_configurations_that_there_are_not(top, base):
@@ -216,11 +239,65 @@ def test_a_motion_at_a_limit_can_be_reversed_and_repeated():
 
 def test_a_start_outside_of_the_limits_can_be_left():
     state = limited(100.0, 140.0)  # d3 is 155 at home
-    after = motion.with_coordinate(state, "z", 139.0)
-    assert after.pose.position[2] == pytest.approx(139.0)
-    assert after.message.startswith("outside of the limits: d1 = ")
+    after = motion.with_coordinate(state, "z", 130.0)
+    assert after.pose.position[2] == pytest.approx(130.0)
+    assert after.message.startswith("outside of the limits: d3 = ")
+    inside = motion.with_coordinate(after, "z", 115.0)
+    assert (inside.pose.position[2], inside.message) == (pytest.approx(115.0), "")
     free = motion.with_coordinate(replace(state, stops=False), "z", 200.0)
     assert (free.pose.position[2], free.message) == (pytest.approx(200.0), "")
+
+
+@pytest.mark.parametrize("value", [138.0001, 139.0, 200.0])
+def test_a_start_outside_of_the_limits_gets_no_farther_outside(value):
+    """By an entry, by a button, or by a joint value; z is 138 at home, and d3 155."""
+    state = limited(100.0, 140.0)
+    joints = state.design.at(state.pose).joints
+    words = "is beyond its limit 140, and would get farther away"
+    after = motion.with_coordinate(state, "z", value)
+    assert after.message in [f"stopped: {name} {words}" for name in ("d1", "d3")]
+    for change in (after, motion.nudged(state, "z", 1), motion.with_coordinate(state, "x", 1e3)):
+        assert words in change.message
+        beyond = np.maximum(change.design.at(change.pose).joints - 140.0, 0.0)
+        assert (beyond <= np.maximum(joints - 140.0, 0.0) + 1e-9).all()
+    far = motion.with_joint(state, 2, value + 20.0)
+    assert far.message == f"stopped: d3 {words}"
+    assert far.design.at(far.pose).joints == pytest.approx(joints, rel=1e-9)
+    less = motion.with_joint(state, 2, 150.0)  # still outside, and less so
+    assert less.design.at(less.pose).joints[2] == pytest.approx(150.0)
+    assert motion.with_joint(state, 2, 10.0).message == "stopped at the limit d3 = 100"
+
+
+def test_once_inside_a_motion_ends_at_limits():
+    """Down from a start that is too high, through the poses within the limits, to their low end."""
+    state = limited(120.0, 150.0)  # d3 is 155 at home
+    after = motion.with_coordinate(state, "z", 10.0)
+    joints = after.design.at(after.pose).joints
+    assert after.message.startswith("stopped at the limit d")
+    assert after.message.endswith(" = 120")
+    assert joints.min() == pytest.approx(120.0, abs=1e-6)
+
+
+def test_at_a_limit_a_number_moves_no_farther():
+    """At both ends of motions the joint is at its limit up to rounding; entries change nothing."""
+    for name, value in (("z", 300.0), ("z", -300.0), ("x", 300.0), ("pitch", 60.0), ("yaw", 90.0)):
+        state = motion.with_coordinate(limited(120.0, 160.0), name, value)
+        again = motion.with_coordinate(state, name, value)
+        assert "stopped at the limit" in again.message
+        apart = motion.coordinates(again.pose) - motion.coordinates(state.pose)
+        assert np.abs(apart).max() < 1e-5
+
+
+def test_limits_of_angles_are_in_degrees():
+    state = sessions.started(choices.named("D1^3 A1^3"))
+    joints = state.design.at(state.pose).joints
+    strokes = np.stack((joints - 0.1, joints + 0.1), axis=1)
+    strokes[~state.design.angular] = np.nan
+    state = replace(state, design=state.design.replace(strokes=strokes))
+    after = motion.with_coordinate(state, "yaw", 80.0)
+    bounds = zip(state.design.joint_names, np.rad2deg(state.design.strokes).tolist(), strict=True)
+    wanted = [f"{name} = {bound:.6g}°" for name, both in bounds for bound in both]
+    assert after.message.removeprefix("stopped at the limit ") in wanted
 
 
 def test_a_singular_pose_does_not_stall_the_platform():

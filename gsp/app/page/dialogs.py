@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Iterable
 from html import escape
 from typing import Any
 
@@ -16,6 +17,26 @@ from gsp.app.state.session import entered, started
 from gsp.errors import GspError
 from gsp.families.circular import hexapod
 from gsp.model.design import Design
+
+# Browsers offer `navigator.clipboard` to pages of the same machine and by https alone, so a page of
+# another machine copies from a field. A field outside of a dialog would not get the focus.
+COPY = """async (text) => {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    const had = document.activeElement, field = document.createElement("textarea");
+    field.value = text;
+    field.style = "position: fixed; top: 0; opacity: 0";
+    (had?.parentElement ?? document.body).append(field);
+    field.select();
+    const done = document.execCommand("copy");
+    field.remove();
+    had?.focus({ preventScroll: true });
+    return done;
+  }
+}"""
+SECONDS_TO_COPY = 5.0
 
 
 def named_dialog(name: str) -> ui.dialog:
@@ -112,7 +133,7 @@ def _lee(client: Client, dialog: ui.dialog) -> None:
         )
         return choices.configured(top, base)
 
-    _buttons(client, dialog, make, "platform")
+    _buttons(client, dialog, make, "platform")(part for half in halves.values() for part in half)
 
 
 def _percent(title: str, field: NumberField) -> float:
@@ -158,26 +179,53 @@ def _hexapod(client: Client, dialog: ui.dialog) -> None:
         }
         return hexapod(**numbers, arrangement=kind.value, degrees=True)
 
-    _buttons(client, dialog, make, "hexapod")
+    _buttons(client, dialog, make, "hexapod")([kind, *(field for _, field in fields.values())])
 
 
-def _buttons(client: Client, dialog: ui.dialog, make: Callable[[], Design], what: str) -> None:
-    """Build OK and Cancel; a design that there is not gives a message and changes nothing."""
+def _buttons(
+    client: Client, dialog: ui.dialog, make: Callable[[], Design], what: str
+) -> Callable[[Iterable[NumberField | ui.select]], None]:
+    """Build OK and Cancel; a design that there is not gives a message and changes nothing.
+
+    Returns
+    -------
+    function of fields
+        Makes the message follow them: it states what is wrong now, or nothing.
+    """
     message = ui.label().classes("gsp-message").props("role=alert")
 
-    def accept() -> None:
+    def made() -> Design | None:
         try:
             design = make()
         except GspError as error:
             message.text = str(error)
-            return
+            return None
         message.text = ""
-        client.load(started(design))
-        dialog.close()
+        return design
 
+    def accept() -> None:
+        design = made()
+        if design is not None:
+            client.load(started(design))
+            dialog.close()
+
+    def look() -> None:
+        if message.text:
+            made()
+
+    def clear() -> None:
+        message.text = ""
+
+    def follow(fields: Iterable[NumberField | ui.select]) -> None:
+        for field in fields:
+            part = field.part if isinstance(field, NumberField) else field
+            part.on_value_change(look)
+
+    dialog.on_value_change(clear)
     with ui.row().classes("gsp-end"):
         ui.button("Cancel", on_click=dialog.close).props("flat")
         ui.button("OK", on_click=accept).props(f'aria-label="OK: this {what}"')
+    return follow
 
 
 def jacobian_dialog(client: Client) -> ui.dialog:
@@ -198,17 +246,16 @@ def jacobian_dialog(client: Client) -> ui.dialog:
         shown.props('tabindex=0 role=region aria-label="Indices"')
         with ui.row():
             for kind in matrices.FORMATS:
-                ui.button(f"Copy as {kind}", on_click=lambda k=kind: copy(k)).props("outline")
+                ui.button(f"Copy as {kind}", on_click=lambda k=kind: copied(k)).props("outline")
             ui.button("Close", on_click=dialog.close)
 
-    def copy(kind: str) -> None:
+    async def copied(kind: str) -> None:
         try:
             text = matrices.as_text(client.state, form.value, kind)
         except GspError as error:
             ui.notify(str(error), type="warning")
             return
-        ui.clipboard.write(text)
-        ui.notify(f"Copied as {kind}")
+        await copy(text, f"Copied as {kind}")
 
     def follow() -> None:
         if not dialog.value:
@@ -226,3 +273,15 @@ def jacobian_dialog(client: Client) -> ui.dialog:
     dialog.on_value_change(follow)
     client.on_move(follow)
     return dialog
+
+
+async def copy(text: str, said: str) -> None:
+    """Copy a text, and notify that it was copied (`said`), or was not."""
+    try:
+        done = await ui.run_javascript(f"({COPY})({json.dumps(text)})", timeout=SECONDS_TO_COPY)
+    except TimeoutError:
+        done = False
+    if done:
+        ui.notify(said)
+    else:
+        ui.notify("The browser did not copy the text", type="warning")

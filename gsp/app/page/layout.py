@@ -9,11 +9,12 @@ from nicegui import ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
-from gsp.app.page.dialogs import configuration_dialog, file_dialog, jacobian_dialog
+from gsp.app.page.dialogs import configuration_dialog, copy, file_dialog, jacobian_dialog
 from gsp.app.page.mechanism import SCENE, MechanismView
 from gsp.app.page.panels.controls import legs_panel, motion_panel
 from gsp.app.page.panels.indices import indices_panel
-from gsp.app.page.panels.plots import catalogue_panel, plots_panel
+from gsp.app.page.panels.plots import plots_panel
+from gsp.app.page.panels.ranking import catalogue_panel
 from gsp.app.page.panels.recorded import recorded_section
 from gsp.app.page.stage import scene
 from gsp.app.searches import Searches
@@ -47,6 +48,13 @@ ARROWS = """(event) => {
   const items = [...event.currentTarget.querySelectorAll("[role=menuitem]")];
   const here = Math.max(items.indexOf(document.activeElement), way > 0 ? -1 : 0);
   items.at((here + way) % items.length).focus();
+}"""
+
+# Where the page has one column, the panel of a tab may be below the screen.
+INTO_VIEW = """(event) => {
+  const narrow = window.matchMedia("(max-width: 900px)").matches, tabs = event.currentTarget;
+  if (!narrow || !event.target.closest("[role=tab]")) return;
+  requestAnimationFrame(() => tabs.scrollIntoView({ block: "start", behavior: "smooth" }));
 }"""
 
 
@@ -172,8 +180,8 @@ def _file_menu(client: Client) -> None:
 
     async def link() -> None:
         if query := _link(client):
-            ui.clipboard.write(f"{await ui.run_javascript('window.location.origin')}/?{query}")
-            ui.notify("The link to this state was copied")
+            origin = await ui.run_javascript("window.location.origin")
+            await copy(f"{origin}/?{query}", "The link to this state was copied")
 
     dialog = file_dialog("Open a design file", "Design file", ".toml", choices.LARGEST_FILE, opened)
     with (
@@ -204,6 +212,7 @@ def _facts(client: Client) -> None:
 
 def _panels(client: Client, view: MechanismView) -> None:
     tabs = ui.tabs().classes("gsp-tabs").mark("panels")
+    tabs.on("click", js_handler=INTO_VIEW)
     with tabs.props('dense align=left mobile-arrows aria-label="Panels"'):
         for name, label in TABS.items():
             ui.tab(name, label)

@@ -99,9 +99,7 @@ def _region(client: Client, view: MechanismView) -> None:
             return
         if found is not None and box.value and client.state.design is state.design:
             view.show_region(found)
-            volume = tables.number(found.volume, 3)
-            unit = f" {state.design.unit}³" if state.design.unit else ""
-            note.text = f"volume ≈ {volume}{unit}" + (", cut off" if found.cut else "")
+            note.text = tables.volume(found, state.design.unit)
 
     def changed() -> None:
         drawn.clear()

@@ -8,12 +8,18 @@ from html import escape
 import numpy as np
 
 from gsp.app.scene.drawing import merit_colour
+from gsp.app.scene.region import Surface
 from gsp.app.state.matrices import LINES
-from gsp.app.state.reading import IndexReading, JointReading, Reading, determinant_of
+from gsp.app.state.reading import IndexReading, JointReading, Reading, determinant_of, powers
 from gsp.app.state.session import Session
+from gsp.determinant import Maximum
 from gsp.geometry.vectors import Array
 from gsp.indices.table import ARROWS
 from gsp.rounding import rounded_down
+
+# What is left of a stroke, as a share of its bounds, below which it is rounding: motions end so
+# near to a limit.
+ROUNDING = 1e-7
 
 
 def number(value: float, digits: int = 5) -> str:
@@ -28,7 +34,8 @@ def number(value: float, digits: int = 5) -> str:
 def facts(state: Session, reading: Reading) -> str:
     """Return the facts below the scene: det J, λ, CTN, CDN_CL, and what is left of the strokes."""
     unit = reading.index("manipulability").unit
-    values = [("det J" + ("" if unit in ("1", "mixed") else f" [{unit}]"), reading.determinant)]
+    bracket = "" if unit in ("1", "mixed") else f" [{powers(unit)}]"
+    values = [(f"det J{bracket}", reading.determinant)]
     values += [
         (reading.index(name).index.symbol, reading.index(name).value)
         for name in ("quality_index", "control_number", "condition_number")
@@ -67,7 +74,10 @@ def least_left(reading: Reading) -> str:
 
 
 def _left(joint: JointReading) -> str:
-    return f"{number(joint.left, 4)} {joint.unit}"
+    """Return what is left of a stroke; nothing is left where it is rounding."""
+    bounds = [abs(x) for x in (joint.low, joint.high, joint.value) if np.isfinite(x)]
+    left = 0.0 if abs(joint.left) <= ROUNDING * max(bounds) else joint.left
+    return f"{number(left, 4)} {joint.unit}".rstrip()
 
 
 def _stroke_gauge(joint: JointReading) -> str:
@@ -91,7 +101,8 @@ def _singularity_gauge(distance: float, length: float | None) -> str:
 
 def _percent(share: float) -> str:
     """Return a share in percent, rounded down: of a lower bound it is one."""
-    return f"{number(rounded_down(100.0 * share, 2), 2)} %"
+    percent = 0.0 if abs(share) <= ROUNDING else rounded_down(100.0 * share, 2)
+    return f"{number(percent, 2)} %"
 
 
 def _meter(share: float, name: str, words: str) -> str:
@@ -109,7 +120,7 @@ def indices(readings: Iterable[IndexReading]) -> str:
     rows = []
     for one in readings:
         index = one.index
-        unit = "" if one.unit == "1" else one.unit
+        unit = powers(one.unit)
         best = number(index.best, 4)
         gauge = "" if one.reason else _gauge(one)
         name = escape(index.name.replace("_", " "))
@@ -125,14 +136,47 @@ def indices(readings: Iterable[IndexReading]) -> str:
     return table(("index", "value", "better", "best", "merit"), rows, numbers=(1, 3))
 
 
+def maximum(found: Maximum, unit: str) -> str:
+    """Return the maximum of |det J| in a sentence: its value, and how well it is known.
+
+    Parameters
+    ----------
+    found : Maximum
+    unit : str
+        Of the index "manipulability" for the design.
+    """
+    value = f"{number(found.value, 8)} {powers(unit) if unit != 'mixed' else ''}".rstrip()
+    if found.method == "closed form":
+        how = "by a closed form"
+    elif found.proven:
+        how = "found by a search, and proven: no pose has a larger one"
+    elif found.starts:
+        how = (
+            f"the largest that a search found; {found.agreed} of its {found.starts} starts ended "
+            "there, and it is not proven"
+        )
+    else:
+        how = "the largest that a search found, and it is not proven"
+    return f"|det J|max = {value}, {how}"
+
+
+def volume(found: Surface, unit: str) -> str:
+    """Return the volume of a sampled region with its error."""
+    error = 100.0 * found.volume_error / found.volume if found.volume > 0.0 else np.inf
+    share = f" ± {error:.0f} %" if 0.5 <= error < 100.0 else " ± 1 %" if error < 0.5 else ""
+    cube = f" {unit}³" if unit else ""
+    cut = ", cut off" if found.cut else ""
+    return f"volume ≈ {number(found.volume, 3)}{cube}{share}, sampled{cut}"
+
+
 def limits(readings: Sequence[JointReading]) -> str:
     """Return the table of the joints: value, limits, and what is left to the nearer one."""
     rows = []
     for one in readings:
-        left = f"{number(one.left, 4)} {escape(one.unit)}" if np.isfinite(one.left) else "no limit"
+        left = escape(_left(one)) if np.isfinite(one.left) else "no limit"
         if one.reason:
             left = f'<span class="why">{escape(one.reason)}</span>'
-        inside = one.left >= 0.0
+        inside = one.left >= -ROUNDING * abs(one.value)
         bar = "" if np.isnan(one.share) else _bar(one.share, "#0072B2" if inside else "#D55E00")
         rows.append(
             f'<tr><th scope="row">{escape(one.name)}</th>'

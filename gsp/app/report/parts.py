@@ -15,7 +15,7 @@ from gsp.app.report.study import Place, Study
 from gsp.app.report.summary import measured
 from gsp.app.scene.figure import figure
 from gsp.app.state.matrices import HOMOGENEOUS, LINES, PLAIN, matrix
-from gsp.app.state.reading import IndexReading
+from gsp.app.state.reading import IndexReading, powers
 from gsp.geometry.vectors import Array
 
 
@@ -127,15 +127,6 @@ def _verdict(place: Place | None) -> str:
         return ""
     where = f'<span class="why">{place.better} of {place.total} better</span>'
     return f'<span class="verdict {place.verdict}">{place.verdict}</span> {where}'
-
-
-def powers(unit: str) -> str:
-    """Return a unit for people: nothing for 1, raised digits.
-
-    >>> powers("mm^3"), powers("1"), powers("mixed")
-    ('mm³', '', 'mixed')
-    """
-    return "" if unit == "1" else unit.replace("^2", "²").replace("^3", "³")
 
 
 def listed(facts: Iterable[tuple[str, str]]) -> str:

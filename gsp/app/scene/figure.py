@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from gsp.app.scene.drawing import drawing, merit_colour, placement
-from gsp.app.state.reading import Reading, read
+from gsp.app.state.reading import Reading, powers, read
 from gsp.app.state.session import Session, started
 from gsp.checks import check_installed, check_type
 from gsp.errors import InvalidInput, expected
@@ -141,7 +141,7 @@ def _facts(reading: Reading) -> str:
     unit, name, value = found.unit, "det J", reading.determinant
     if np.isnan(value):
         name, value = found.index.symbol, found.value
-    power = "" if unit in ("1", "mixed") else f" {unit.replace('^3', '³')}"
+    power = "" if unit in ("1", "mixed") else f" {powers(unit)}"
     values = [f"{name} = {value:.7g}{power}", f"{shown.index.symbol} = {shown.value:.5g}"]
     return " · ".join(text for text, x in zip(values, (value, shown.value), strict=True) if x == x)
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 
 from gsp.catalogue import design as published
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms
 from gsp.catalogue.placement import TEMPLATE
-from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, apart, expected
-from gsp.families.texts import best_placed, design_of_family, is_family
+from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, expected
+from gsp.families.lee.platforms import KINDS
+from gsp.families.texts import best_placed, best_placed_by_kinds, design_of_family, is_family
 from gsp.model.design import Design
 from gsp.model.design.designs import design_from_toml
 
@@ -19,6 +22,8 @@ TRIANGLE, HEXAGON = "triangle", "hexagon"
 TYPES = (TRIANGLE, HEXAGON)
 EDGES, CENTRE, SIDE = "along both edges", "toward the centre", "along one side"
 SEPARATIONS = (EDGES, CENTRE, SIDE)
+# Words of the families.
+KIND_OF: Mapping[str, str] = MappingProxyType(dict(zip(SEPARATIONS, KINDS, strict=True)))
 # Letters of an uploaded design file; redundant designs of a thousand legs have fewer.
 LARGEST_FILE = 200_000
 # Legs of an uploaded design, so that a reading stays quick.
@@ -109,8 +114,8 @@ def configured(top: Half, base: Half) -> Design:
     Parameters
     ----------
     top, base : Half
-        Sizes are the sides a and b. Separations along both edges are α and β and may differ; the
-        two others are defined for two hexagons with one share.
+        Sizes are the sides a and b. Each hexagon has a kind of separation and a percentage of its
+        own.
 
     Returns
     -------
@@ -119,8 +124,7 @@ def configured(top: Half, base: Half) -> Design:
     Raises
     ------
     InvalidInput
-        On sizes or percentages out of range, or separations that the dissertation does not
-        combine.
+        On other types or separations, sizes or percentages out of range.
 
     Examples
     --------
@@ -129,22 +133,18 @@ def configured(top: Half, base: Half) -> Design:
     ('lee-3-3 (a=15, b=30)', [0.0, 0.0, 15.0])
 
     *Source: Lee2000, figure 41; eqs. (2), (44), (60), (69), (74) for the designs, (16), (54), (63)
-    for the height.*
+    for the height. Different separations are combined leg by leg, A_1 with E_A1 and so on (ours).*
     """
     for half, what in ((top, "top"), (base, "base")):
         _check_half(half, what)
-    kinds = {half.separation for half in (top, base) if half.kind == HEXAGON}
-    if len(kinds) > 1:
-        raise InvalidInput(expected("joint separation", "the same kind on top and base", "two"))
-    kind = kinds.pop() if kinds else EDGES
-    if kind == EDGES:
+    ways = [half.separation if half.kind == HEXAGON else EDGES for half in (top, base)]
+    if ways == [EDGES, EDGES]:
         return _hexagonal(top, base)
-    if top.share != base.share or TRIANGLE in (top.kind, base.kind):
-        wanted = "two hexagons with the same percentage"
-        got = " and ".join(f"{share} %" for share in apart(100 * top.share, 100 * base.share))
-        raise InvalidInput(expected(f"joint separation {kind}", wanted, got))
-    family = {CENTRE: "lee-centre", SIDE: "lee-side"}[kind]
-    return best_placed(family, top.size, base.size, top.share)
+    kinds = [KIND_OF[way] for way in ways]
+    if kinds[0] == kinds[1] and top.share == base.share:
+        return best_placed(f"lee-{kinds[0]}", top.size, base.size, top.share)
+    sizes = top.size, base.size, top.share, base.share
+    return best_placed_by_kinds(*sizes, top=kinds[0], base=kinds[1])
 
 
 def _hexagonal(top: Half, base: Half) -> Design:

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from gsp.app.state.reading import missing_words, settings
+from gsp.app.state.reading import missing_words, powers, settings
 from gsp.app.state.session import Session, started
 from gsp.catalogue import instantiate, mechanisms
 from gsp.errors import GspError, InvalidInput, expected
@@ -224,4 +224,4 @@ def _with_unit(text: str, unit: str) -> str:
 
 def _label(state: Session, index: Index) -> str:
     unit = index.unit(state.design)
-    return index.symbol if unit in ("1", "mixed") else f"{index.symbol} [{unit}]"
+    return index.symbol if unit in ("1", "mixed") else f"{index.symbol} [{powers(unit)}]"

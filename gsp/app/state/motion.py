@@ -23,6 +23,8 @@ LEAST_MOTION = 1e-14
 # A motion is sampled at so many points, then so often again between the last two: the end before a
 # limit is exact to 32⁻⁶ of the motion.
 MOTION_SAMPLES, MOTION_ROUNDS = 33, 6
+# By what a joint may get farther beyond a limit, in sizes of the design and rad: rounding.
+ROUNDING = 1e-12
 
 
 def coordinates(pose: Pose) -> Array:
@@ -109,8 +111,9 @@ def toward(state: Session, target: Pose) -> Session:
     """Return the state after the straight motion to a pose, or at the first limit on the way.
 
     The motion is sampled: violations shorter than 1/32 of it can be missed; for a proof see
-    `gsp.travel`. A start outside of the limits ends nothing, so that the platform can always
-    leave it. Nor does a singular pose; where det J changes its sign the message states it.
+    `gsp.travel`. From a pose outside of the limits the motion goes on as long as no joint gets
+    farther beyond its limits, so that the platform can always return. A singular pose ends nothing;
+    where det J changes its sign the message states it.
     """
     design, start = state.design, state.pose
     twist = np.concatenate(
@@ -119,40 +122,75 @@ def toward(state: Session, target: Pose) -> Session:
     if np.abs(twist / np.repeat([state.size, 1.0], 3)).max() < LEAST_MOTION:
         return replace(state, message="")
     if state.stops and has_strokes(design):
-        if not feasible(design, start):
-            reason = feasible(design, target).reason
-            message = f"outside of the limits: {reason}" if reason else ""
-            return replace(state, pose=target, message=message)
-        share, limit = _reach(design, start, twist)
+        share, limit = _reach(state, twist)
+        end = target if share == 1.0 else start.moved(share * twist)
         if limit:
-            end = start.moved(share * twist)
-            return replace(state, pose=end, message=f"stopped at the limit {limit}")
+            return replace(state, pose=end, message=limit)
+        if reason := feasible(design, end).reason:
+            return replace(state, pose=end, message=f"outside of the limits: {reason}")
     message = "passed a singular pose" if _passes_singular(design, start, twist) else ""
     return replace(state, pose=target, message=message)
 
 
-def _reach(design: Design, start: Pose, twist: Array) -> tuple[float, str]:
-    """Return which share of a motion is feasible, and the limit that ends it, "" for none."""
-    low, high, limit = 0.0, 1.0, ""
+def _reach(state: Session, twist: Array) -> tuple[float, str]:
+    """Return which share of a motion is allowed, and what ends it there, "" for nothing.
+
+    Each joint may be as far beyond its limits as it has been at the least before.
+    """
+    low, high, words = 0.0, 1.0, ""
+    least: Array | None = None  # of how far joints have been beyond their limits, up to `low`
     for _ in range(MOTION_ROUNDS):
         shares = np.linspace(low, high, MOTION_SAMPLES)
-        found = feasible(design, start.moved(shares[:, None] * twist))
-        bad = np.flatnonzero(~found.ok)
-        if not bad.size:
+        found = feasible(state.design, state.pose.moved(shares[:, None] * twist))
+        beyond = _beyond(found)
+        if least is None:
+            least = beyond[0]
+        allowed = np.minimum(np.minimum.accumulate(beyond), least)
+        slack = ROUNDING * np.where(state.design.angular, 1.0, state.size)
+        worse = beyond[1:] > allowed[:-1] + slack
+        if not worse.any():
             break
-        first = max(int(bad[0]), 1)
-        limit = _limit(found, first)
-        low, high = float(shares[first - 1]), float(shares[first])
-    return (low, limit) if limit else (1.0, "")
+        first = int(worse.any(axis=1).argmax())
+        joint = int(worse[first].argmax())
+        words = _what_ends(state.design, found, first + 1, joint, allowed[first, joint])
+        least = allowed[first]
+        low, high = float(shares[first]), float(shares[first + 1])
+    return (low, words) if words else (1.0, "")
 
 
-def _limit(found: Feasibility, number: int) -> str:
-    """Return the limit that one of several poses violates, such as "d3 = 140"."""
-    joint, side = np.argwhere(found.violated[number])[0]
-    bound = (found.low, found.high)[side][joint]
-    if not np.isfinite(bound):  # an undefined joint violates both sides
-        return f"{found.names[joint]} is not defined"
-    return f"{found.names[joint]} = {bound:.6g}"
+def _beyond(found: Feasibility) -> Array:
+    """Return how far joints are beyond their limits, 0 inside, inf undefined (..., n) [of it]."""
+    away = np.maximum(found.low - found.values, found.values - found.high)
+    inside = ~found.violated.any(axis=-1)
+    return np.asarray(np.where(inside, 0.0, np.nan_to_num(away, nan=np.inf)))
+
+
+def _what_ends(design: Design, found: Feasibility, number: int, joint: int, allowed: float) -> str:
+    """Return why a motion ends before one of several poses: "stopped at the limit d3 = 140".
+
+    Parameters
+    ----------
+    design : Design
+    found : Feasibility
+    number, joint : int
+        Of the pose, and of the joint that it would bring too far.
+    allowed : float
+        How far beyond its limits the joint may be.
+    """
+    name, value = found.names[joint], found.values[number, joint]
+    if np.isnan(value):
+        return f"stopped: {name} is not defined farther on"
+    bound = found.low[joint] if value < found.low[joint] else found.high[joint]
+    return _ended(design, joint, bound, beyond=allowed > 0.0)
+
+
+def _ended(design: Design, joint: int, bound: float, *, beyond: bool) -> str:
+    """Return the message of a motion that ends at a limit, or where it is beyond one already."""
+    name = design.joint_names[joint]
+    limit = f"{np.rad2deg(bound):.6g}°" if design.angular[joint] else f"{bound:.6g}"
+    if beyond:
+        return f"stopped: {name} is beyond its limit {limit}, and would get farther away"
+    return f"stopped at the limit {name} = {limit}"
 
 
 def _passes_singular(design: Design, start: Pose, twist: Array) -> bool:
@@ -188,7 +226,7 @@ def with_joint(state: Session, number: int, value: float) -> Session:
     if len(design.joint_names) != 6:
         return state.saying("one joint alone cannot be changed: the design is redundant")
     joints = posture.joints.copy()
-    joints[number], bound = _within(state, number, value)
+    joints[number], bound = _within(state, number, value, joints[number])
     try:
         found = forward(design, joints, state.pose)
     except GspError as error:
@@ -198,15 +236,17 @@ def with_joint(state: Session, number: int, value: float) -> Session:
     return replace(state, pose=found.pose, message=bound)
 
 
-def _within(state: Session, number: int, value: float) -> tuple[float, str]:
-    """Return a joint value within its stroke, and a message where it was not."""
+def _within(state: Session, number: int, value: float, now: float) -> tuple[float, str]:
+    """Return a joint value within its stroke, or no farther beyond it; a message where it was."""
     strokes = state.design.strokes
     if not state.stops or strokes is None:
         return float(value), ""
     low, high = strokes[number]
-    inside = float(np.fmin(np.fmax(value, low), high))
-    name = state.design.joint_names[number]
-    return inside, "" if inside == value else f"stopped at the limit {name} = {inside:.6g}"
+    inside = float(np.fmin(np.fmax(value, np.fmin(low, now)), np.fmax(high, now)))
+    if inside == value:
+        return inside, ""
+    bound = float(low if value < inside else high)
+    return inside, _ended(state.design, number, bound, beyond=inside != bound)
 
 
 def _unreached(name: str, value: float, design: Design, number: int, status: str) -> str:

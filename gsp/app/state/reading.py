@@ -23,6 +23,8 @@ from gsp.model.posture import Posture
 
 # Set once the code of slow indices is compiled.
 COMPILED = threading.Event()
+# Digits of powers.
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,6 +133,16 @@ class Reading:
     def index(self, name: str) -> IndexReading:
         """Return the reading of an index by its name."""
         return next(one for one in self.indices if one.index.name == name)
+
+
+def powers(unit: str) -> str:
+    """Return a unit for people: nothing for 1, raised digits.
+
+    >>> powers("mm^3"), powers("m^-2"), powers("1"), powers("mixed")
+    ('mm³', 'm⁻²', '', 'mixed')
+    """
+    stem, _, power = unit.partition("^")
+    return "" if unit == "1" else stem + power.translate(RAISED)
 
 
 def gauges(index: Index, values: Array) -> Array:

@@ -24,6 +24,8 @@ NAMES = ("position x", "position y", "position z", "roll", "pitch", "yaw")
 SLIDER_REACH, SLIDER_REACH_DEG, PITCH_DEG = 1.5, 180.0, 89.0
 # Steps of a slider over its range, at least; a step is rounded to a power of ten.
 SLIDER_STEPS = 600
+# Notes on values that a slider does not reach, and the share of its range that is rounding.
+BELOW, ABOVE, ROUNDING = "◂ below the slider", "above the slider ▸", 1e-9
 # Reach of the slider of a distance to either side of its first value, in sizes of the design.
 JOINT_REACH = 0.6
 
@@ -58,11 +60,18 @@ class Row:
             self.slider = ui.slider(
                 min=0.0, max=1.0, step=0.001, on_change=lambda e: self._changed(e.value)
             ).props(f'aria-label="{name}"')
+            for key, end in (("home", "min"), ("end", "max")):
+                self.slider.on(f"keydown.{key}.prevent", partial(self._go_to, end))
             self._button("add", f"{name} plus", partial(nudge, 1))
             self.field = NumberField(take=enter, name=f"{name} value", props="hide-bottom-space")
+            self.outside = ui.label().classes("gsp-outside")
 
     def show(self, value: float, low: float, high: float) -> None:
-        """Show a value; the slider reaches from low to high."""
+        """Show a value; the slider reaches from low to high, and a note states one beyond it."""
+        slack = ROUNDING * (high - low)
+        below, above = value < low - slack, value > high + slack
+        self.outside.text = BELOW if below else ABOVE if above else ""
+        self.outside.set_visibility(below or above)
         unit = 10.0 ** np.floor(np.log10(max((high - low) / SLIDER_STEPS, 1e-12)))
         # Numbers: the slider would compare texts letter by letter.
         ends = {"min": float(low), "max": float(high), "step": float(unit)}
@@ -76,6 +85,9 @@ class Row:
         """Allow or forbid changes."""
         for part in (self.slider, self.field.part):
             part.set_enabled(able)
+
+    def _go_to(self, end: str) -> None:
+        self.slider.value = self.slider.props[end]
 
     def _button(self, icon: str, name: str, call: Callable[[], object]) -> None:
         ui.button(icon=icon, on_click=call).props(f'flat dense aria-label="{name}"')
@@ -201,7 +213,8 @@ def joint_range(joint: JointReading, middle: float, size: float) -> tuple[float,
         return max(joint.low, 0.0), min(joint.high, 180.0)
     low = max(joint.low, middle - JOINT_REACH * size, 0.0)
     high = min(joint.high, middle + JOINT_REACH * size)
-    value = joint.value if np.isfinite(joint.value) else middle
+    value = np.clip(joint.value, max(joint.low, 0.0), joint.high)
+    value = float(value) if np.isfinite(value) else middle
     return min(low, value), max(high, value, low + 1e-9 * size)
 
 

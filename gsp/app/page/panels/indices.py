@@ -55,8 +55,7 @@ def _maximum(client: Client) -> Callable[[], None]:
             bar.value = search.done / search.total if search.total else 0.0
             text.text = f"{search.status}: {search.done} of {search.total or '…'} rounds"
         elif found is not None:
-            proof = "proven" if found.proven else f"{found.agreed} of {found.starts} searches"
-            text.text = f"|det J|max = {tables.number(found.value, 8)}, {found.method}, {proof}"
+            text.text = tables.maximum(found, client.reading.index("manipulability").unit)
         else:
             text.text = "not known yet; λ needs it"
 

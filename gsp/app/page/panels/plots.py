@@ -1,38 +1,22 @@
-"""The panel of plots, and that of the catalogue ranked at the present pose."""
+"""The panel of plots: an index along a motion, and over a plane of positions."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from nicegui import run, ui
+from nicegui import ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.page.panels.contours import contour, label_place, round_levels
-from gsp.app.state import choices, curves
-from gsp.app.state.session import started
-from gsp.catalogue import design_names, instantiate, mechanism
+from gsp.app.state import curves
 from gsp.errors import GspError
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.model.design import Design
 
 SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
-RANKED = {name: symbol for name, symbol in SYMBOLS.items() if not INDICES[name].share_of}
 BLUE, VERMILION, INK = "#0072B2", "#D55E00", "#1F2933"
-# The template, which a user need not choose.
-PRESENT = "the present design"
-# Rows of the ranking on one page of its table.
-ROWS_PER_PAGE = 12
-COLUMNS = (
-    {"name": "rank", "label": "Rank", "field": "rank", "sortable": True},
-    {"name": "name", "label": "Mechanism", "field": "name", "sortable": True, "align": "left"},
-    {"name": "group", "label": "Class", "field": "group", "sortable": True, "align": "left"},
-    {"name": "value", "label": "Value", "field": "value", "sortable": True},
-    {"name": "why", "label": "Note", "field": "why", "align": "left"},
-)
 
 
 def plots_panel(client: Client) -> None:
@@ -114,8 +98,8 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
         "animation": False,
         "grid": {"left": 64, "right": 88, "top": 16, "bottom": 44},
         "tooltip": {},
-        "xAxis": [_categories(plot.first, plot.axes[0], 28), _steps(size)],
-        "yAxis": [_categories(plot.second, plot.axes[1], 44), _steps(size)],
+        "xAxis": [_cells(plot.first), _coordinate(plot.first, plot.axes[0], "bottom", 28)],
+        "yAxis": [_cells(plot.second), _coordinate(plot.second, plot.axes[1], "left", 48)],
         "visualMap": {
             "seriesIndex": 0,
             "min": low,
@@ -129,10 +113,12 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
         },
         "series": [
             {"type": "heatmap", "data": data},
-            *_contours(plot.values, round_levels(low, high)),
+            *_contours(plot, round_levels(low, high)),
             {
                 "type": "scatter",
-                "data": [[middle, middle, float(known.mean())]],
+                "data": [[float(plot.first[middle]), float(plot.second[middle])]],
+                "xAxisIndex": 1,
+                "yAxisIndex": 1,
                 "symbol": "circle",
                 "symbolSize": 12,
                 "itemStyle": {"color": "#FFFFFF", "borderColor": VERMILION, "borderWidth": 3},
@@ -141,22 +127,23 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
     }
 
 
-def _contours(values: Array, levels: list[float]) -> list[dict[str, Any]]:
+def _contours(plot: curves.Map, levels: list[float]) -> list[dict[str, Any]]:
     """Return the series of contour lines, and that of their labels."""
+    values = plot.values
     lines: list[dict[str, Any]] = []
     labels: list[dict[str, Any]] = []
     taken = [0.5 * (np.array(values.shape) - 1.0)]  # the present pose
     for level in levels:
         found = contour(values, level)
-        lines += [{"coords": line.round(3).tolist()} for line in found]
+        lines += [{"coords": _coordinates(plot, line)} for line in found]
         place = label_place(found, values.shape, taken)
         if place is not None:
             taken.append(place)
             text = {"formatter": tables.number(level, 4)}
-            labels.append({"value": place.round(3).tolist(), "label": text})
+            labels.append({"value": _coordinates(plot, place), "label": text})
     axes = {"xAxisIndex": 1, "yAxisIndex": 1, "silent": True}
     written = {"show": True, "position": "inside", "fontSize": 11, "color": INK}
-    written |= {"textBorderColor": "#FFFFFF", "textBorderWidth": 2}
+    written |= {"backgroundColor": "#FFFFFFE6", "padding": [1, 3], "borderRadius": 3}
     return [
         {
             "type": "lines",
@@ -170,19 +157,35 @@ def _contours(values: Array, levels: list[float]) -> list[dict[str, Any]]:
     ]
 
 
-def _steps(size: int) -> dict[str, Any]:
-    """Return an axis in steps of the grid, as categories have no places between them."""
-    return {"type": "value", "min": -0.5, "max": size - 0.5, "show": False}
+def _coordinates(plot: curves.Map, steps: Array) -> list[Any]:
+    """Return coordinates of places (..., 2) in steps of the grid."""
+    start = np.array([plot.first[0], plot.second[0]])
+    step = np.array([plot.first[1], plot.second[1]]) - start
+    flat = (start + steps * step).ravel().tolist()
+    found: list[Any] = np.array([float(f"{x:.6g}") for x in flat]).reshape(steps.shape).tolist()
+    return found
 
 
-def _categories(values: Array, name: str, gap: int) -> dict[str, Any]:
+def _cells(values: Array) -> dict[str, Any]:
+    """Return the axis of the cells, which has no marks: they would be at odd numbers."""
+    return {"type": "category", "data": [f"{x:.4g}" for x in values], "show": False}
+
+
+def _coordinate(values: Array, name: str, position: str, gap: int) -> dict[str, Any]:
+    """Return the axis of coordinates around the cells; its marks are at round numbers."""
+    half = 0.5 * float(values[1] - values[0])
     return {
-        "type": "category",
-        "data": [f"{x:.3g}" for x in values],
+        "type": "value",
+        "min": float(values[0]) - half,
+        "max": float(values[-1]) + half,
+        "position": position,
         "name": name,
         "nameLocation": "middle",
         "nameGap": gap,
-        "axisLabel": {"interval": 4},
+        "splitLine": {"show": False},
+        "axisLabel": {"hideOverlap": True, "showMinLabel": False, "showMaxLabel": False},
+        "axisTick": {"show": True},
+        "axisLine": {"show": True, "onZero": False},
     }
 
 
@@ -198,72 +201,3 @@ def _set(chart: ui.echart, options: dict[str, Any]) -> None:
     chart.options.clear()
     chart.options.update(options)
     chart.update()
-
-
-def catalogue_panel(client: Client) -> None:
-    """Build the ranking of the 195 mechanisms at the present pose; a click loads one."""
-    names = [PRESENT, *design_names()]
-    used: list[Design] = []  # the template of the table
-    with ui.element("div").classes("gsp-row"):
-        index = ui.select(RANKED, value="control_number", label="Index to rank by")
-        template = ui.select(names, value=PRESENT, label="Template of the anchors")
-        for part in (index, template):
-            part.props("dense outlined")
-        button = ui.button("Rank at this pose", icon="sort")
-    note = ui.label("195 mechanisms on the anchor lines of the template.").classes("gsp-note")
-    table = _ranking_table()
-
-    async def rank() -> None:
-        button.disable()
-        try:
-            name = template.value
-            chosen = client.state.design if name == PRESENT else choices.named_template(name)
-            found = await run.io_bound(curves.ranking, client.state, index.value, chosen) or ()
-            table.columns[3]["label"] = INDICES[index.value].symbol
-            used[:] = [chosen]
-            table.rows = [_row(i, one) for i, one in enumerate(found, 1)]
-            note.text = f"Ranked at the present pose, best first; length {_length(client)}."
-            without = [one.reason for one in found if np.isnan(one.value)]
-            if without:
-                note.text += f" {len(without)} have no value: {max(without, key=without.count)}."
-        except GspError as error:
-            note.text = str(error)
-        finally:
-            button.enable()
-
-    def load(name: str) -> None:
-        if used:
-            length = client.state.length
-            design = instantiate(mechanism(name), used[0])
-            client.load(replace(started(design, client.state.pose), length=length))
-
-    button.on_click(rank)
-    table.on("load", lambda event: load(str(event.args)))
-
-
-def _ranking_table() -> ui.table:
-    """Return an empty table of mechanisms, of which a click on a name emits "load"."""
-    columns: list[dict[str, Any]] = [dict(column) for column in COLUMNS]
-    table = ui.table(columns=columns, rows=[], row_key="name", pagination=ROWS_PER_PAGE)
-    table.classes("gsp-wide").props("dense flat")
-    table.add_slot(
-        "body-cell-name",
-        '<q-td :props="props"><q-btn flat dense no-caps color="primary" :label="props.row.name" '
-        "@click=\"$parent.$emit('load', props.row.name)\" /></q-td>",
-    )
-    return table
-
-
-def _row(rank: int, one: curves.Ranked) -> dict[str, Any]:
-    return {
-        "rank": None if np.isnan(one.value) else rank,
-        "name": one.name,
-        "group": one.group,
-        "value": float(f"{one.value:.5g}") if np.isfinite(one.value) else None,
-        "why": one.reason,
-    }
-
-
-def _length(client: Client) -> str:
-    length = client.state.length
-    return "none" if length is None else tables.number(length)

@@ -5,6 +5,8 @@ import { film, save, snapshot } from "gsp-scene/film.js";
 
 const INK = 0x1a1a1a, GREY = 0x8a8f98, ACTIVE = 0xe69f00, PURPLE = 0xaa4499, SKY = 0x3d8fc4;
 const ROD = 0.011, TUBE = 0.018, BALL = 0.03, MIDDLE = 0.55, NUMBER = 0.3, BEYOND = 0.14;
+// Pixels between a label and the edge of the picture.
+const EDGE = 4;
 // Assembly modes farther away than so many radii of the mechanism would shrink it: they may be cut.
 const AWAY = 5;
 const UP = new THREE.Vector3(0, 1, 0);
@@ -415,6 +417,16 @@ export class Scene {
   render() {
     this.renderer.render(this.scene, this.camera);
     this.texts.render(this.scene, this.camera);
+    if (this.pitch.visible) this.keepInside(this.pitch);
+  }
+
+  // Move a label that would be cut off at an edge of the picture.
+  keepInside(text) {
+    const { clientWidth: width, clientHeight: height } = this.root, { style, offsetWidth, offsetHeight } = text.element;
+    const at = text.getWorldPosition(new THREE.Vector3()).project(this.camera);
+    const moved = (x, most, size) => Math.min(Math.max(x, size / 2 + EDGE), most - size / 2 - EDGE) - x;
+    style.marginLeft = `${moved(((at.x + 1) * width) / 2, width, offsetWidth)}px`;
+    style.marginTop = `${moved(((1 - at.y) * height) / 2, height, offsetHeight)}px`;
   }
 
   picture(name) {

@@ -1,0 +1,261 @@
+"""Controls as they are used in a real browser: mouse, keys, a finger, copies, the ranking, axe."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib.resources
+import urllib.error
+import urllib.request
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.app.state import matrices, motion
+from gsp.app.state.session import started, with_frame
+from tests.app import chromium
+from tests.app.visiting import FACTS, SIX_THREE, TEXT
+
+pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+pytestmark = pytest.mark.skipif(
+    chromium.executable() is None, reason="no Chromium is installed: the page is not tested in it"
+)
+
+MESSAGE = "document.querySelector('.gsp-message[role=status]').innerText"
+
+
+def value(name):
+    return f"Number(document.querySelector('[aria-label=\"{name} value\"]').value)"
+
+
+async def middle(tab, role, name):
+    """The middle of an element, in view."""
+    node = await tab.named(role, name)
+    await tab.send("DOM.scrollIntoViewIfNeeded", backendNodeId=node)
+    box = (await tab.send("DOM.getBoxModel", backendNodeId=node))["model"]["content"]
+    return sum(box[0::2]) / 4.0, sum(box[1::2]) / 4.0
+
+
+async def phone(tab):
+    """Make the tab that of a phone with a touch screen."""
+    await tab.send(
+        "Emulation.setDeviceMetricsOverride",
+        width=390, height=844, deviceScaleFactor=1, mobile=True,
+    )  # fmt: skip
+    await tab.send("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
+    await tab.run("window.old = true")
+    await tab.send("Page.reload")  # pages look for touch screens when they are loaded
+    await tab.until(f"!window.old && {FACTS}")
+    await tab.send("Page.bringToFront")
+
+
+async def swipe(tab, places):
+    """Put a finger on the first place, draw it to the others, and lift it."""
+    for number, (x, y) in enumerate(places):
+        kind = "touchMove" if number else "touchStart"
+        await tab.send("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y}])
+        await asyncio.sleep(0.02)
+    await tab.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+
+def test_a_slider_by_mouse_keys_and_numbers(visit):
+    state = started(gsp.catalogue.design(SIX_THREE))
+    first = float(state.pose.position[2])
+    top = motion.with_coordinate(state, "z", 1e3)
+    bottom = motion.with_coordinate(state, "z", -1e3)
+
+    async def work(tab):
+        await tab.send("Page.bringToFront")
+        x, y = await middle(tab, "slider", "position z")
+        mouse = {"button": "left", "clickCount": 1, "y": y}
+        await tab.send("Input.dispatchMouseEvent", type="mousePressed", x=x, **mouse)
+        for step in range(1, 9):
+            await tab.send(
+                "Input.dispatchMouseEvent", type="mouseMoved", buttons=1, x=x + 3 * step, **mouse
+            )
+        await tab.until(f"{value('position z')} > {first + 1.0}")
+        await tab.send("Input.dispatchMouseEvent", type="mouseReleased", x=x + 24, **mouse)
+        # The slider has the focus: its keys go to its ends, and the motion ends at limits.
+        for key, code, end in (("Home", 36, bottom), ("End", 35, top)):
+            await tab.key(key, code)
+            await tab.until(f"Math.abs({value('position z')} - {end.pose.position[2]}) < 1e-3")
+            assert await tab.run(MESSAGE) == end.message
+        # A number does not get farther either, nor does a button.
+        await tab.enter("textbox", "position z value", "200")
+        await asyncio.sleep(0.3)
+        assert await tab.run(MESSAGE) == top.message
+        assert await tab.run(value("position z")) == pytest.approx(top.pose.position[2], rel=1e-5)
+        assert "least left" in (facts := await tab.run(FACTS))
+        assert "e−" not in facts  # of rounding nothing is left
+        # Axes of the platform, and back.
+        await tab.click("button", "Motion reset")
+        await tab.enter("textbox", "yaw value", "30")
+        await tab.click("button", "Platform axes")
+        await tab.click("button", "position x plus")
+        turned = with_frame(motion.with_coordinate(state, "yaw", 30.0), "platform")
+        wanted = motion.nudged(turned, "x", 1).pose.position
+        await tab.until(f"Math.abs({value('position y')} - {wanted[1]}) < 1e-4")
+        assert await tab.run(value("position x")) == pytest.approx(wanted[0], rel=1e-5)
+        await tab.click("button", "Motion reset")
+        await tab.until(f"{value('position y')} === 0")
+        # A slider that the value is beyond.
+        await tab.click("checkbox", "Screw axis")
+        await tab.click("tab", "Legs")
+        await tab.run("document.querySelector('[aria-label=\"Motions stop at limits\"]').click()")
+        await tab.click("tab", "Motion")
+        note = "[...document.querySelectorAll('.gsp-outside')].map(e => e.innerText).join('')"
+        assert await tab.run(note) == ""
+        await tab.enter("textbox", "position z value", "25")
+        await tab.until(f"{note} === 'above the slider ▸'")
+        # The label of the screw axis is in the picture, wherever the axis is.
+        inside = """(() => {
+          const [stage, text] = ['.gsp-scene', '.gsp-label-screw'].map(
+            (name) => document.querySelector(name).getBoundingClientRect());
+          return text.width > 20 && text.left >= stage.left && text.right <= stage.right
+            && text.top >= stage.top && text.bottom <= stage.bottom;
+        })()"""
+        for place in ("-40", "60"):
+            await tab.enter("textbox", "position x value", place)
+            await tab.until(inside)
+
+    visit(work)
+
+
+def test_a_finger_moves_sliders_and_the_panel_of_a_tab_comes_into_view(visit):
+    first = float(gsp.catalogue.design(SIX_THREE).home.position[2])
+
+    async def work(tab):
+        await phone(tab)
+        x, y = await middle(tab, "slider", "position z")
+        await swipe(tab, [(x - 2 * step, y) for step in range(11)])
+        await tab.until(f"{value('position z')} < {first - 1.0}")
+        # Across the slider it scrolls the page, and moves nothing.
+        x, y = await middle(tab, "slider", "roll")
+        before = await tab.run("scrollY")
+        await swipe(tab, [(x, y - 8 * step) for step in range(11)])
+        await tab.until(f"scrollY > {before + 20}")
+        assert await tab.run(value("roll")) == 0.0
+        # The tabs are below the scene, and what they show is on the screen.
+        scene = "document.querySelector('.gsp-scene').getBoundingClientRect().bottom"
+        tabs = "document.querySelector('.gsp-tabs').getBoundingClientRect().top"
+        await tab.run("scrollTo(0, 0)")
+        for name in ("Indices", "Plots"):
+            await swipe(tab, [await middle(tab, "tab", name)])
+            await tab.until(f"{tabs} - {scene} < 40 && {tabs} - {scene} >= 0")
+        assert await tab.run("document.documentElement.scrollWidth") == 390
+
+    visit(work)
+
+
+# Keep what is copied: by the clipboard of the browser, or without it from a field.
+COPIED = """(() => {
+  const write = async (text) => { window.copied = text; };
+  Object.defineProperty(navigator, 'clipboard', { value: { writeText: write }, writable: true });
+  document.addEventListener('copy', (event) => { window.copied = event.target.value; });
+})()"""
+
+
+def test_copies_and_a_hexapod_of_the_dialog(visit):
+    state = motion.nudged(started(gsp.catalogue.design(SIX_THREE)), "x", 1)
+
+    async def work(tab):
+        await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
+        await tab.click("button", "position x plus")
+        await tab.run(COPIED)
+        await tab.click("button", "Jacobian matrix")
+        await tab.named("dialog", "Jacobian matrix")
+        await asyncio.sleep(0.4)
+        for kind in ("numpy", "CSV", "LaTeX", "numpy"):
+            await tab.run("window.copied = ''")
+            await tab.click("button", f"Copy as {kind}")
+            text = await tab.until("window.copied")
+            assert text == matrices.as_text(state, matrices.PLAIN, kind)
+            if kind == "LaTeX":  # the page of another machine has no such clipboard
+                await tab.run("navigator.clipboard = undefined")
+        await tab.until(f"{TEXT}.includes('Copied as numpy')")
+        await tab.key("Escape", 27)
+        await tab.until("!document.querySelector('.q-dialog')")
+        await tab.click("button", "Configuration")
+        await tab.named("dialog", "Configuration")
+        await asyncio.sleep(0.4)
+        await tab.click("tab", "Hexapod on circles")
+        await tab.named("textbox", "Base radius")
+        await asyncio.sleep(0.4)
+        await tab.enter("textbox", "Base radius", "3")
+        await tab.click("button", "OK: this hexapod")
+        design = gsp.hexapod(3.0, 20.0, 1.0, 20.0, 1.5, degrees=True)
+        wanted = f"{np.linalg.det(design.at(design.home).jacobian):.7g}".replace("-", "−")
+        await tab.until(f"{FACTS}.includes('{wanted}')")
+
+    visit(work)
+
+
+def test_the_ranking_is_sorted_by_keyboard(visit):
+    rows = "[...document.querySelectorAll('.q-table tbody tr')].map(e => e.innerText)"
+    sort = "document.querySelector('th[aria-sort]')?.ariaSort"
+
+    async def work(tab):
+        await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
+        await tab.click("tab", "Catalogue")
+        assert "Not ranked yet" in await tab.run(TEXT)
+        assert "No data" not in await tab.run(TEXT)
+        await tab.click("button", "Rank at this pose")
+        await tab.until(f"{rows}.length > 5")
+        for ways in ("ascending", "descending"):
+            await tab.send("DOM.focus", backendNodeId=await tab.named("button", "Mechanism"))
+            await tab.key("Enter", 13)
+            await tab.until(f"{sort} === '{ways}'")
+            names = sorted(m.name for m in gsp.catalogue.mechanisms())
+            first = (await tab.run(f"{rows}[0]")).split("\t")[1].strip()
+            assert first == (names[0] if ways == "ascending" else names[-1])
+        # Without a length one mechanism has a value: it is first in both directions.
+        for ways in ("ascending", "descending"):
+            await tab.click("button", "CTN")
+            await tab.until(f"{sort} === '{ways}'")
+            assert (await tab.run(f"{rows}[0]")).split("\t")[1].strip() == "D1^6"
+
+    visit(work)
+
+
+@pytest.mark.parametrize("path", ["nonsense", "report/1", "index.html"])
+def test_an_unknown_address_is_no_page_of_the_tool(served, path):
+    with pytest.raises(urllib.error.HTTPError) as found:
+        urllib.request.urlopen(f"{served[0]}/{path}")
+    page = found.value.read().decode()
+    assert found.value.code == 404
+    assert "There is no page at this address." in page
+    assert "href='/'" in page
+    with urllib.request.urlopen(f"{served[0]}/?design=lee-2000-3-3") as answer:
+        assert answer.status == 200
+
+
+# Faults that axe finds, with the elements; menus of Quasar are beside all landmarks.
+AXE = """axe.run(document, {resultTypes: ['violations'], rules: {region: {enabled: false}}}).then(
+  (found) => found.violations.map((one) => [one.id, one.nodes.map((node) => node.html)]))"""
+
+
+def test_an_accessibility_checker_finds_nothing(visit):
+    axe = pytest.importorskip("axe_core_python", reason="axe-core-python is not installed")
+    script = importlib.resources.files(axe).joinpath("axe.min.js").read_text("utf-8")
+
+    async def work(tab):
+        async def check():
+            await asyncio.sleep(0.4)  # transitions of colours
+            assert await tab.run(AXE) == []
+
+        await tab.run(f"{script};0")
+        await check()
+        for name in ("Legs", "Indices", "Plots", "Catalogue"):
+            await tab.click("tab", name)
+            await check()
+        for name in ("Configuration", "Jacobian matrix"):
+            await tab.click("button", name)
+            await tab.named("dialog", name)
+            await check()
+            await tab.key("Escape", 27)
+            await tab.until("!document.querySelector('.q-dialog')")
+        # It can find something.
+        await tab.run("document.querySelector('[aria-label=\"Save the picture\"]').ariaLabel = ''")
+        assert [rule for rule, _ in await tab.run(AXE)] == ["button-name"]
+
+    visit(work)
