@@ -58,7 +58,8 @@ def best_placed(family: str, a: float, b: float, *shares: float) -> Design:
     if closed is not None:
         return design.replace(home=_raised(best_central_pose(closed, a, b, *shares)[2], a))
     alpha, beta = (0.0, 0.0, *shares)[-2:]
-    return design.replace(home=_raised(Pose([0.0, 0.0, best_height(a, b, alpha, beta)]), a))
+    height = float(best_height(a, b, alpha, beta))
+    return design.replace(home=_raised(Pose([0.0, 0.0, height]), a))
 
 
 def best_placed_by_kinds(

@@ -19,7 +19,7 @@ from gsp.rounding import rounded_down
 
 # What is left of a stroke, as a share of its bounds, below which it is rounding: motions end so
 # near to a limit.
-ROUNDING = 1e-7
+LEFT_ROUNDING = 1e-7
 
 
 def number(value: float, digits: int = 5) -> str:
@@ -76,7 +76,7 @@ def least_left(reading: Reading) -> str:
 def _left(joint: JointReading) -> str:
     """Return what is left of a stroke; nothing is left where it is rounding."""
     bounds = [abs(x) for x in (joint.low, joint.high, joint.value) if np.isfinite(x)]
-    left = 0.0 if abs(joint.left) <= ROUNDING * max(bounds) else joint.left
+    left = 0.0 if abs(joint.left) <= LEFT_ROUNDING * max(bounds) else joint.left
     return f"{number(left, 4)} {joint.unit}".rstrip()
 
 
@@ -101,7 +101,7 @@ def _singularity_gauge(distance: float, length: float | None) -> str:
 
 def _percent(share: float) -> str:
     """Return a share in percent, rounded down: of a lower bound it is one."""
-    percent = 0.0 if abs(share) <= ROUNDING else rounded_down(100.0 * share, 2)
+    percent = 0.0 if abs(share) <= LEFT_ROUNDING else rounded_down(100.0 * share, 2)
     return f"{number(percent, 2)} %"
 
 
@@ -176,7 +176,7 @@ def limits(readings: Sequence[JointReading]) -> str:
         left = escape(_left(one)) if np.isfinite(one.left) else "no limit"
         if one.reason:
             left = f'<span class="why">{escape(one.reason)}</span>'
-        inside = one.left >= -ROUNDING * abs(one.value)
+        inside = one.left >= -LEFT_ROUNDING * abs(one.value)
         bar = "" if np.isnan(one.share) else _bar(one.share, "#0072B2" if inside else "#D55E00")
         rows.append(
             f'<tr><th scope="row">{escape(one.name)}</th>'

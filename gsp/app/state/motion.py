@@ -24,7 +24,7 @@ LEAST_MOTION = 1e-14
 # limit is exact to 32⁻⁶ of the motion.
 MOTION_SAMPLES, MOTION_ROUNDS = 33, 6
 # By what a joint may get farther beyond a limit, in sizes of the design and rad: rounding.
-ROUNDING = 1e-12
+MOTION_ROUNDING = 1e-12
 
 
 def coordinates(pose: Pose) -> Array:
@@ -146,7 +146,7 @@ def _reach(state: Session, twist: Array) -> tuple[float, str]:
         if least is None:
             least = beyond[0]
         allowed = np.minimum(np.minimum.accumulate(beyond), least)
-        slack = ROUNDING * np.where(state.design.angular, 1.0, state.size)
+        slack = MOTION_ROUNDING * np.where(state.design.angular, 1.0, state.size)
         worse = beyond[1:] > allowed[:-1] + slack
         if not worse.any():
             break

@@ -94,16 +94,17 @@ def by_kinds(
         Sides of platform and base triangle, from 1e-100 to 1e100.
     alpha, beta : float [1]
         Shares of platform and base, in [0, 1].
-    theta : (...) array_like [rad]
+    theta : array_like, shape (...) [rad]
         Twist.
-    h : array_like or None [unit]
+    h : array_like, shape (...), or None [unit]
         Height; None takes the best one, (l_1² − h²)^¼ (l_2² − h²)^¼.
     top, base : "edges", "centre" or "side"
 
     Returns
     -------
     Separated
-        Lengths of legs 1, 3, 5 then 2, 4, 6; |det J| is NaN where a leg has no length.
+        Height, lengths of legs 1, 3, 5 then 2, 4, 6, and |det J|, each of shape (...); |det J| is
+        NaN where a leg has no length.
 
     Raises
     ------
@@ -130,8 +131,11 @@ def best_pose_by_kinds(
 
     Parameters
     ----------
-    a, b, alpha, beta, top, base
-        As of `separated_by_kinds`.
+    a, b : float [unit]
+        Sides of platform and base triangle, from 1e-100 to 1e100.
+    alpha, beta : float [1]
+        Shares of platform and base, in [0, 1].
+    top, base : "edges", "centre" or "side"
 
     Returns
     -------

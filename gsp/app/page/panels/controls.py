@@ -25,7 +25,7 @@ SLIDER_REACH, SLIDER_REACH_DEG, PITCH_DEG = 1.5, 180.0, 89.0
 # Steps of a slider over its range, at least; a step is rounded to a power of ten.
 SLIDER_STEPS = 600
 # Notes on values that a slider does not reach, and the share of its range that is rounding.
-BELOW, ABOVE, ROUNDING = "◂ below the slider", "above the slider ▸", 1e-9
+BELOW, ABOVE, SLIDER_ROUNDING = "◂ below the slider", "above the slider ▸", 1e-9
 # Reach of the slider of a distance to either side of its first value, in sizes of the design.
 JOINT_REACH = 0.6
 
@@ -68,7 +68,7 @@ class Row:
 
     def show(self, value: float, low: float, high: float) -> None:
         """Show a value; the slider reaches from low to high, and a note states one beyond it."""
-        slack = ROUNDING * (high - low)
+        slack = SLIDER_ROUNDING * (high - low)
         below, above = value < low - slack, value > high + slack
         self.outside.text = BELOW if below else ABOVE if above else ""
         self.outside.set_visibility(below or above)
