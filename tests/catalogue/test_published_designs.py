@@ -11,9 +11,15 @@ import gsp
 from gsp.files.knowledge import knowledge
 
 EXACT = (
+    "basic-robotics-large",
+    "basic-robotics-small",
+    "dehaeze-cubic-above-large",
+    "dehaeze-cubic-above-medium",
+    "dehaeze-cubic-above-small",
     "dehaeze-cubic-centred",
     "dehaeze-cubic-large",
     "dehaeze-cubic-low",
+    "dehaeze-general",
     "lee-2000-3-3",
     "lee-2000-3-6",
     "lee-2000-6-6",

@@ -39,6 +39,7 @@ CHOICES = {
     "energies": ("maximal/minimal", "minimal/maximal"),
     "criterion": ("distance", "angle", "pitch_error"),
     "system": ("congruence", "bundle", "field", "regulus", "two pencils", "one line", "parallel"),
+    "nominal": ("nategh-agheli-nominal", "nategh-agheli-real"),
     "joint": ("d1", "d2", "d3", "d4", "d5", "d6", "theta4", "theta5"),
     "mechanism": ("D1^6", "D4^3 A1^3", "D1 D2 D3 D4 A1^2", "D3^6", "D1^5 D3"),
     "constraint": ("D1", "D2", "D3", "D4", "A1"),

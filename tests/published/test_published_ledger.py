@@ -13,10 +13,22 @@ LEDGERS = {ledger.paper: ledger for ledger in map(published.read_ledger, publish
 
 # Counted in the papers: equations, figures (by their parts, where they have some), tables.
 COUNTS = {
-    "CDSL2006": (0, 0, 0),
-    "Dehaeze2020": (0, 0, 0),
-    "LinuxCNC": (0, 0, 0),
-    "Rubin": (0, 0, 0),
+    **dict.fromkeys(
+        (
+            "BasicRobotics",
+            "CDSL2006",
+            "Cheers2021",
+            "Dehaeze2020",
+            "LinuxCNC",
+            "MCL745",
+            "Martyushev2025",
+            "MirrorCtrl",
+            "Rubin",
+            "Viso",
+            "WolframSystemModeler",
+        ),
+        (0, 0, 0),
+    ),
     "Lee2000": (77, 42, 0),
     "Nawratil": (36, 17, 0),
     "TozKucuk2016": (25, 7, 1),

@@ -7,11 +7,14 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.published.quantities import (
+    basic_robotics,
     common,
+    dehaeze_2020,
     dimensions,
     lee_2000,
     nawratil,
     toz_kucuk_2016,
+    viso,
     workspace,
 )
 
@@ -24,6 +27,9 @@ PAPERS: Mapping[str, Quantities] = MappingProxyType(
         "Workspace-3": workspace.QUANTITIES,
         "Workspace-A": workspace.QUANTITIES,
         "Lee2000": lee_2000.QUANTITIES,
+        "Dehaeze2020": dehaeze_2020.QUANTITIES,
+        "Viso": viso.QUANTITIES,
+        "BasicRobotics": basic_robotics.QUANTITIES,
     }
 )
 

@@ -1,4 +1,4 @@
-"""Quantities that records of any paper may name: joints, Jacobians, indices, stiffness.
+"""Quantities that records of any paper may name: joints, Jacobians, indices, stiffness, poses.
 
 With them the numbers of another paper need no code, only its design and its records as text.
 """
@@ -16,6 +16,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
+from gsp.kinematics import assembly_modes as all_modes
 from gsp.model.posture import Posture
 
 
@@ -110,6 +111,24 @@ def stiffness(
     return statics.stiffness(placed.design.with_origin(point), pose, k)
 
 
+def extensions(
+    design: str,
+    reference: float | Sequence[float] | None = None,
+    scale: float | Sequence[float] = 1.0,
+    position: Sequence[float] | None = None,
+    rpy_deg: Sequence[float] = (0, 0, 0),
+) -> Array:
+    """Actuated distances less `reference` (default: at the home pose), times `scale`: (n,)."""
+    placed = posture(design, position, rpy_deg)
+    start = posture(design).joints if reference is None else np.asarray(reference)
+    return np.asarray((placed.joints - start) * np.asarray(scale))
+
+
+def assembly_modes(design: str, joints: Sequence[float]) -> int:
+    """Return the number of real poses with given joint values."""
+    return len(all_modes(catalogue.design(design), joints).poses.position)
+
+
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
         "joint": joint,
@@ -117,5 +136,7 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "homogeneous_jacobian": homogeneous_jacobian,
         "index": index,
         "stiffness": stiffness,
+        "extensions": extensions,
+        "assembly_modes": assembly_modes,
     }
 )
