@@ -102,8 +102,10 @@ def test_all_modes_are_printed_drawn_and_written(gsp):
 
 
 def test_joint_values_without_a_mode_are_said_to_have_none(gsp):
-    printed = gsp("forward", OCTAHEDRON, "--joints", "1.4 1.4 1.4 1.4 1.4 9", "--all")
+    printed = gsp("forward", OCTAHEDRON, "--joints", "2.4 1.1 0.8 1.2 1.8 1.7", "--all")
     assert "0 real of 16 complex assembly modes" in printed.out
+    printed = gsp("forward", OCTAHEDRON, "--joints", "1.4 1.4 1.4 1.4 1.4 9", "--all")
+    assert "impossible: two joint values contradict each other" in printed.err
 
 
 def test_without_a_mode_the_table_is_written_and_no_picture(gsp):

@@ -27,6 +27,7 @@ WARNINGS = {
     "moving": "the platform can move with locked actuators: there are poses besides these",
     "incomplete": "some paths were lost: modes may be missing",
     "undefined": "joint values that are missing, or none that a joint can have",
+    "impossible": "two joint values contradict each other, whatever the pose",
 }
 
 

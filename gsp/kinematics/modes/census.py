@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Mapping
 from functools import cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -30,10 +32,11 @@ def root_counts() -> dict[str, int]:
     return {row["mechanism"]: int(row["complex_modes"]) for row in _rows()}
 
 
-def confirmed_counts() -> dict[str, int]:
+@cache
+def confirmed_counts() -> Mapping[str, int]:
     """Return the numbers of the table that its column of confidence doesn't call not confirmed."""
     confirmed = [row for row in _rows() if not row["confidence"].startswith("not confirmed")]
-    return {row["mechanism"]: int(row["complex_modes"]) for row in confirmed}
+    return MappingProxyType({row["mechanism"]: int(row["complex_modes"]) for row in confirmed})
 
 
 def counted(mechanism: Mechanism, seed: int = 1) -> tuple[Start, float, int]:
@@ -46,7 +49,7 @@ def counted(mechanism: Mechanism, seed: int = 1) -> tuple[Start, float, int]:
         rng = np.random.default_rng(tried)
         start = seeded(layout, rng)
         for quiet in CENSUS_QUIET_LOOPS:
-            start = completed(start, rng, quiet=quiet)
+            start = completed(start, rng, quiet=quiet, patient=True)
             error = trace(start, rng)
             if layout.angular.sum() == 3:
                 # The rotations are a finite number, which loops of distances do not exchange.
@@ -62,7 +65,7 @@ def row_of(mechanism: Mechanism, seed: int = 1) -> dict[str, str]:
     return {
         "mechanism": mechanism.name,
         "complex_modes": str(len(start.poses)),
-        "method": f"monodromy, {start.loops} loops, seed {used}",
+        "method": f"monodromy, lost paths again, {start.loops} loops, seed {used}",
         "confidence": ("" if error < TRACE_TOLERANCE else "not confirmed: ")
         + f"trace test: {error:.0e}",
     }

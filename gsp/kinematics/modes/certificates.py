@@ -8,10 +8,10 @@ import numpy as np
 
 from gsp.checks import optional
 from gsp.geometry.duals import Dual
-from gsp.geometry.pose import Pose
 from gsp.geometry.scalars import dot
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes.equations import Layout, residual
+from gsp.kinematics.newton.centred import centred
 from gsp.model.design import Design
 
 # Bits of the arithmetic, and half sides of the boxes that are tried: of the quaternion, and of the
@@ -20,13 +20,22 @@ CERTIFICATE_BITS = 106
 BOX_RADII = tuple(10.0**power for power in range(-13, -3))
 
 
-def certified(design: Design, joints: Array, quaternions: Array, poses: Pose) -> Array:
+def certified(design: Design, joints: Array, centres: Array) -> Array:
     """Return the half sides of boxes with exactly one solution each, (m,); NaN without a proof.
 
     The test is that of Krawczyk, in ball arithmetic, of the equations of
     `gsp.kinematics.modes.equations` with the dimensions and joint values as they are given. A box
-    is a quaternion within the half side in each component, and a position within that times
-    `design.rms_radius`. Boxes that overlap count as not proven.
+    is a quaternion within the half side in each component, and a place of the centre of the
+    platform anchors, seen from that of the base anchors, within that times `design.rms_radius`. So
+    the origins of the frames have no influence: anchors are shifted in ball arithmetic. Boxes that
+    overlap count as not proven.
+
+    Parameters
+    ----------
+    design : Design
+    joints : (6,) array [unit of the design, rad]
+    centres : (m, 7) array
+        Quaternions (w, x, y, z) and positions in the frames of `centred(design)`.
 
     Raises
     ------
@@ -38,7 +47,6 @@ def certified(design: Design, joints: Array, quaternions: Array, poses: Pose) ->
     """
     with optional("python-flint", "certified assembly modes", "verify", module="flint"):
         import flint
-    centres = np.hstack((quaternions, poses.position / design.rms_radius))
     with flint.ctx.workprec(CERTIFICATE_BITS):
         system = _System(flint, design, joints)
         radii = np.array([system.radius(centre) for centre in centres])
@@ -46,11 +54,13 @@ def certified(design: Design, joints: Array, quaternions: Array, poses: Pose) ->
 
 
 class _System:
-    """The equations of a design in ball arithmetic; positions are in sizes of the design."""
+    """The equations of a design in ball arithmetic, in centred frames and sizes of the design."""
 
     def __init__(self, flint: Any, design: Design, joints: Array) -> None:
         self.flint, self.ball = flint, flint.arb
-        self.size = self.ball(design.rms_radius)
+        frame = centred(design).frame
+        self.size = self.ball(float(frame[0]))
+        self.origins = [self.ball(float(x)) for x in frame[1:]]
         layout = Layout.of([leg.name for leg in design.legs])
         lines = np.nan_to_num(np.hstack((design.base_directions, design.platform_directions)))
         anchors = np.hstack((design.base_points, design.platform_points))
@@ -61,7 +71,10 @@ class _System:
         ]
 
     def _row(self, anchors: Array, lines: Array, value: float, angular: bool) -> list[Any]:
-        points = [self.ball(float(x)) / self.size for x in anchors]
+        points = [
+            (self.ball(float(x)) - origin) / self.size
+            for x, origin in zip(anchors, self.origins, strict=True)
+        ]
         s, t = ([self.ball(float(x)) for x in half] for half in (lines[:3], lines[3:]))
         if angular:
             return [*points, *s, *t, self.ball(value).cos() * (dot(s, s) * dot(t, t)).sqrt()]

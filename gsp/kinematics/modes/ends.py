@@ -323,7 +323,8 @@ def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, 
     refined = follow(
         layout, parameters, parameters, poses[~singular], tight=FIRST_CORRECTION, most=PATH_STEPS
     )
-    near = np.abs(refined.poses - poses[~singular]).max(axis=1, initial=0.0) < REAL_MOVE_TOLERANCE
+    moved = np.abs(refined.poses - poses[~singular]).max(axis=1, initial=0.0)
+    near = moved < REAL_MOVE_TOLERANCE * size[places][~singular, 0]
     kept[~singular], poses[~singular] = near & refined.arrived, refined.poses
     if singular.any():
         poses[singular], error, _ = returned(layout, parameters, poses[singular])

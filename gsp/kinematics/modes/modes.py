@@ -17,12 +17,15 @@ from gsp.kinematics.modes.census import confirmed_counts
 from gsp.kinematics.modes.certificates import certified
 from gsp.kinematics.modes.ends import Ends, ends_of, real_poses
 from gsp.kinematics.modes.equations import order_of, parameters_from, rotations
+from gsp.kinematics.modes.reach import contradict
 from gsp.kinematics.modes.starts import start_of
 from gsp.kinematics.newton.centred import Centred, centred
 from gsp.model.design import Design
 
 # Distances in sizes of the design beyond which paths are not followed.
 LARGEST_DISTANCE_SIZES = 1e6
+# Joint error above which a mode is polished, how often, and the singular values that count then.
+POLISHED_RESIDUAL, JOINT_STEPS, POLISHED_RCOND = 1e-14, 3, 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -47,8 +50,11 @@ class AssemblyModes(ReadOnly):
         Whether it is proven that there is exactly one solution in a box about the pose, and that
         the boxes are disjoint. False without `certify=True`.
     radius : (n,) array [1]
-        Half sides of these boxes: of the components of a unit quaternion, and of the position in
-        `design.rms_radius`. NaN without a proof.
+        Half sides of these boxes: of the components of a unit quaternion, and, in units of
+        `design.rms_radius`, of the place of the centre of the platform anchors, seen from that of
+        the base anchors. NaN without a proof. The boxes, and whether there is a proof, do not
+        depend on the origins of the frames; the rounding of `poses` in frames that are far from the
+        anchors is not a part of the boxes.
     n_complex : int
         Number of regular solutions in complex numbers, the real ones included.
     n_singular, n_infinite, n_lost : int
@@ -63,7 +69,8 @@ class AssemblyModes(ReadOnly):
         "moving": the joint values allow a motion, and there are poses besides those listed.
         "incomplete": some paths were lost, and modes may be missing; also if a distance is more
         than 1e6 times `design.rms_radius`. "undefined": joint values that are NaN or none that a
-        joint can have; there are no poses.
+        joint can have; there are no poses. "impossible": two joint values contradict each other,
+        whatever the pose, by a triangle inequality between the anchors; there are no poses.
     """
 
     poses: Pose
@@ -131,6 +138,8 @@ def assembly_modes(design: Design, joints: ArrayLike, *, certify: bool = False) 
     values = system.joints_from(target)
     if not system.possible(values):
         return _nothing("undefined")
+    if contradict(design, target):
+        return _nothing("impossible")
     if values.max() > LARGEST_DISTANCE_SIZES:
         return _nothing("incomplete")
     names, rows = order_of([leg.name for leg in design.legs])
@@ -189,10 +198,12 @@ def _result(
 ) -> AssemblyModes:
     system = centred(design)
     small = unchecked(Pose, solutions[:, 4:], rotations(solutions.astype(np.complex128)).real)
+    small = _polished(system, system.joints_from(target), small)
     poses = system.pose_to(small)
     radius = np.full(len(solutions), np.nan)
     if certify:
-        radius = certified(design, target, solutions[:, :4], poses)
+        centres = np.hstack((small.quaternion[:, [3, 0, 1, 2]], small.position))
+        radius = certified(design, target, centres)
     singular = ends.singular[places]
     side, ratio = _regularity(system, small)
     regular, total = int((~ends.singular).sum()), int(ends.multiplicity.sum())
@@ -219,6 +230,30 @@ def _status(ends: Ends, multiple: int) -> str:
     if ends.lost or ends.excess:
         return "incomplete"
     return "multiple" if multiple else "found"
+
+
+def _polished(system: Centred, target: Array, poses: Pose) -> Pose:
+    """Return poses after Newton steps on the joint values, where these reduce their errors.
+
+    The equations have squared distances and cosines, whose roundings are large errors of distances
+    near 0 and of angles near 0 or π.
+    """
+    for _ in range(JOINT_STEPS):
+        posture = system.design.at(poses)
+        errors = posture.joints - target
+        worst = np.abs(errors).max(axis=-1, initial=0.0)
+        poor = np.flatnonzero(worst > POLISHED_RESIDUAL)  # without undefined ones
+        if not poor.size:
+            break
+        inverses = np.linalg.pinv(posture.jacobian[poor], rcond=POLISHED_RCOND)
+        moved = poses[poor].moved(-(inverses @ errors[poor, :, None])[..., 0])
+        after = np.abs(system.design.at(moved).joints - target).max(axis=-1)
+        better = after < worst[poor]
+        position, rotation = poses.position.copy(), poses.rotation.copy()
+        position[poor[better]] = moved.position[better]
+        rotation[poor[better]] = moved.rotation[better]
+        poses = unchecked(Pose, position, rotation)
+    return poses
 
 
 def _residual(design: Design, target: Array, poses: Pose) -> Array:

@@ -16,6 +16,7 @@ from gsp.kinematics.modes.equations import (
     coordinates,
     distinct,
     normal,
+    refined,
     residual,
 )
 
@@ -25,6 +26,8 @@ FIRST_CORRECTION, RETRACED_CORRECTION = 3e-3, 3e-5
 PATH_STEPS, RETRACED_PATH_STEPS = 1000, 3000
 # A solution of a start system is kept if its last correction is below this share of it.
 LAST_CORRECTION = 1e-8
+# Last corrections of large poses that rounding explains, at most: these ends are refined.
+MOST_ROUNDING = 1e-4
 # Loops without a new solution after which a system of unknown number is taken to be complete, and
 # loops at most.
 QUIET_LOOPS, MOST_LOOPS = 6, 200
@@ -86,6 +89,14 @@ def follow(
     n = len(poses)
     out, ends, numbers = np.empty_like(poses), np.empty(n, dtype=np.int64), np.empty((n, 3))
     track(layout.kinds, start, end, np.ascontiguousarray(poses), tight, most, out, ends, numbers)
+    size, last = np.abs(out).max(axis=1, initial=0.0), numbers[:, 2]
+    rounding = np.minimum(np.finfo(float).eps * size**2, MOST_ROUNDING)  # of residuals, a share
+    rough = np.flatnonzero((ends == 0) & (last >= LAST_CORRECTION) & (last < rounding))
+    if rough.size:
+        fine, after = refined(layout, end, out[rough])
+        moved = np.abs(fine - out[rough]).max(axis=1) / size[rough]
+        good = (after < LAST_CORRECTION) & (moved < rounding[rough])
+        out[rough[good]], numbers[rough[good], 2] = fine[good], after[good]
     return Paths(poses=out, ends=ends, numbers=numbers)
 
 
@@ -102,10 +113,20 @@ def followed(layout: Layout, start: Complex, end: Complex, poses: Complex) -> Pa
     return found
 
 
-def around(start: Start, poses: Complex, corners: list[Complex]) -> Complex:
-    """Return the ends of paths around a loop of parameters; lost paths are left out."""
+def around(
+    start: Start, poses: Complex, corners: list[Complex], *, patient: bool = False
+) -> Complex:
+    """Return the ends of paths around a loop of parameters.
+
+    Paths that are lost are left out; if `patient`, they are followed again with shorter steps.
+    """
     for here, there in pairwise([start.parameters, *corners, start.parameters]):
-        found = follow(start.layout, here, there, poses, tight=FIRST_CORRECTION, most=PATH_STEPS)
+        if patient:
+            found = followed(start.layout, here, there, poses)
+        else:
+            found = follow(
+                start.layout, here, there, poses, tight=FIRST_CORRECTION, most=PATH_STEPS
+            )
         poses = found.poses[found.arrived]
     return poses
 
@@ -141,18 +162,24 @@ def solved(
 
 
 def completed(
-    start: Start, rng: np.random.Generator, *, expected: int | None = None, quiet: int = QUIET_LOOPS
+    start: Start,
+    rng: np.random.Generator,
+    *,
+    expected: int | None = None,
+    quiet: int = QUIET_LOOPS,
+    patient: bool = False,
 ) -> Start:
     """Return a system with more of its solutions, by loops of its parameters.
 
     The poses and parameters that satisfy the equations are the graph of a function: the last
     parameter of each row follows from the pose and the rest. So they are one irreducible variety,
     and loops of the parameters lead from one solution to all. The loops end as soon as `expected`
-    solutions are known, or after `quiet` loops without a new one.
+    solutions are known, or after `quiet` loops without a new one. `patient`: as for `around`.
     """
     layout, without = start.layout, 0
     while len(start.poses) != expected and without < quiet and start.loops < MOST_LOOPS:
-        ends = around(start, start.poses, [layout.random(rng), layout.random(rng)])
+        corners = [layout.random(rng), layout.random(rng)]
+        ends = around(start, start.poses, corners, patient=patient)
         both = np.vstack((start.poses, ends))
         kept = both[distinct(both)]
         without = 0 if len(kept) > len(start.poses) else without + 1
