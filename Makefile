@@ -18,16 +18,18 @@ help:
 
 ## set up .venv, check style and types, run the tests
 test:
-	$(MAKE) -j2 lint compiled
+	$(MAKE) -j3 lint compiled
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
-# Compiled functions in the cache, while types are checked: both take a minute on one core. Then the
-# byte code of the tests, which in a fresh clone each process of pytest would make by itself. What
-# cannot be collected is reported by the tests.
+# Compiled functions in the cache, in two parts while types are checked: each takes one to two minutes
+# on one core. Then the byte code of the tests, which in a fresh clone each process of pytest would
+# make by itself. What cannot be collected is reported by the tests.
 ## compile what numba caches, and the byte code of the tests
-compiled: $(VENV)/.tools
-	$(BIN)/python -m tests.compile
+compiled: compiled-proofs compiled-workspaces
 	-$(BIN)/python -m pytest --collect-only --quiet > /dev/null
+
+compiled-%: $(VENV)/.tools
+	$(BIN)/python -m tests.compile $*
 
 ## every check, with the whole campaigns of thousands of designs (hours)
 check-long: lint compiled
