@@ -18,7 +18,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.published.quantities.common import posture
 
-COMBINATIONS, DIRECTIONS = 25, 50
+COMBINATIONS, ANGLES_OF_DIRECTIONS = 25, 50
 
 
 def pure_strokes(design: str, translation: float, rotation: float) -> Array:
@@ -53,7 +53,8 @@ def mobility(design: str, stroke: float) -> float:
     The directions are those of the page, of which some are along legs to 1e-4.
     """
     polar, azimuth = np.meshgrid(
-        np.linspace(0.0, np.pi, DIRECTIONS), np.linspace(0.0, 2.0 * np.pi, DIRECTIONS)
+        np.linspace(0.0, np.pi, ANGLES_OF_DIRECTIONS),
+        np.linspace(0.0, 2.0 * np.pi, ANGLES_OF_DIRECTIONS),
     )
     ways = np.stack(
         (np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)), axis=-1
