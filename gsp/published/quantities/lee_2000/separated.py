@@ -76,11 +76,13 @@ def turning_rho(family: str) -> float:
     return float(found.x)
 
 
-def singular_turns(family: str, axis: str, about: str, rho: float = 0.0) -> Array:
+def singular_turns(
+    family: str, axis: str, about: str, rho: float = 0.0, step: float = 0.0
+) -> Array:
     """Return the turns [deg] from the best configuration to singularity, backward and forward.
 
     About a line through the platform origin, or through the base origin, in the direction
-    of an axis of the base.
+    of an axis of the base. With a step [deg], the nearest multiples of it.
     """
     if axis not in ("x", "y", "z") or about not in ("own", "base"):
         raise InvalidInput(expected("axis, about", '"x", "y", "z"; "own", "base"', (axis, about)))
@@ -94,7 +96,8 @@ def singular_turns(family: str, axis: str, about: str, rho: float = 0.0) -> Arra
         rows = np.where(posture.defined[..., None, None], posture.jacobian, 0.0)
         return np.where(posture.defined, np.linalg.det(rows), np.nan)
 
-    return np.array([_first_zero(signed, -1.0), _first_zero(signed, 1.0)])
+    turns = np.array([_first_zero(signed, -1.0), _first_zero(signed, 1.0)])
+    return step * np.round(turns / step) if step else turns
 
 
 def _turn(axis: Array, angle: ArrayLike) -> Array:
