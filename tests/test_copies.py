@@ -165,3 +165,17 @@ def test_mappings_of_records_are_read_only_in_copies(kind, again):
             assert copied.keys() == value.keys()
             with pytest.raises(TypeError, match="does not support item assignment"):
                 copied["x"] = 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_record_is_not_equal_to_an_array(kind):
+    """One answer, not one for each element, and no arithmetic that takes the record apart."""
+    record = boundary.instances()[kind]
+    if isinstance(record, tuple):
+        pytest.skip("a named tuple is compared as a tuple")
+    for other in (np.zeros(3), np.eye(3), np.array([record], dtype=object), np.float64(1.0)):
+        assert (record == other) is False
+        assert (other == record) is False
+        assert (record != other) is True
+    with pytest.raises(TypeError):
+        np.ones(3) * record

@@ -154,7 +154,12 @@ class ReadOnly:
     once and keeps is left out, and is computed again from the arrays of the copy. Records whose
     arrays are those of others hold views of them, which are read-only, and leave the arrays as
     they are.
+
+    Compared with an array a record is not equal, as with any other object, and arithmetic with
+    arrays is a TypeError: numpy would take the record apart, or compare it with each element.
     """
+
+    __array_ufunc__ = None
 
     def __init_subclass__(cls, **given: Any) -> None:
         super().__init_subclass__(**given)
