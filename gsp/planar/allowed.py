@@ -86,13 +86,12 @@ class Legs:
         value = np.where(norm(self.normal) == 0.0, norm(offset), line)
         return np.asarray(((value >= self.low - slack) & (value <= self.high + slack)).all(axis=1))
 
-    def curves(self) -> list[Curve]:
+    def curves(self, slack: float) -> list[Curve]:
         """Return the circles and lines that bound the positions, each once, with all its limits.
 
-        A curve that one limit allows on one side only, and another on the other side only, bounds
-        nothing.
+        Curves nearer than `slack` [length] are one. A curve that one limit allows on one side only,
+        and another on the other side only, bounds nothing.
         """
-        slack = SAME_TOLERANCE * self.size
         every: list[Curve] = []
         for leg, (low, high) in enumerate(zip(self.low, self.high, strict=True)):
             for side, reach in ((0, low), (1, high)):

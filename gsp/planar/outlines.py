@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active
@@ -25,11 +25,14 @@ from gsp.planar.curves import Curve, crossings
 from gsp.planar.design import PlanarDesign
 from gsp.workspace.exact.spheres import SAME_TOLERANCE
 
-# Crossings nearer than this [share of the size] are one point, and shorter pieces are points: where
-# curves touch, half the digits are lost.
-SAME_CROSSING = 1e-7
+# How near crossings are one point, as shorter pieces are, and how near curves are one [shares of
+# the size]: where curves touch, half the digits are lost. Curves that nearly touch or coincide may
+# form no closed loops with the first pair; the first pair that closes all of them is taken.
+SAME = ((1e-7, SAME_TOLERANCE), (1e-5, SAME_TOLERANCE), (1e-6, 1e-8), (1e-5, 1e-7), (1e-4, 1e-6))
 # Where pieces are tested [shares of their length]. Others may touch a curve there.
 TESTED_SHARES = np.array([0.21, 0.48, 0.83])
+# What is expected of curves that do not form outlines.
+DISTINCT = "limits whose curves coincide, or differ by more than rounding"
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +127,8 @@ def planar_components(design: PlanarDesign, angle: float = 0.0) -> tuple[PlanarC
     InvalidInput
         If the strokes do not bound the positions: neither a D1 leg with a greatest length, nor two
         legs whose lines have different directions; or on arguments of other types.
+    GspError
+        If curves that nearly touch or coincide form no closed outlines.
 
     Examples
     --------
@@ -153,18 +158,21 @@ def components(legs: Legs) -> tuple[PlanarComponent, ...]:
     """Return the components that legs allow at a fixed angle, the largest first."""
     if not legs.possible:
         return ()
-    loops = [(_area(loop, legs.centre.mean(axis=0)), loop) for loop in _loops(_pieces(legs))]
+    loops = [(_area(loop, legs.centre.mean(axis=0)), loop) for loop in _closed(legs)]
     loops.sort(key=lambda item: -item[0])
     outer = [(area, loop) for area, loop in loops if area > 0.0]
     inner: dict[int, list[tuple[float, Loop]]] = defaultdict(list)
     for area, loop in loops:
         if area < 0.0:
             curve, start, stop, *_ = loop[0]
-            there = curve.at(0.5 * (start + stop))
-            around = [i for i, (_, o) in enumerate(outer) if _winding(_plain(o), there) > 0.5]
+            # Most of three points, as a hole may touch the outline in one of them.
+            there = curve.at(start + TESTED_SHARES * (stop - start))
+            turns = [np.median(_winding(_plain(loop), there)) for _, loop in outer]
+            around = [i for i, turn in enumerate(turns) if turn > 0.5]
+            if not around:
+                raise GspError(expected("strokes", DISTINCT, "a hole that no outline is around"))
             # The smallest of them: outer loops are in descending order.
-            for last in around[-1:]:
-                inner[last].append((area, loop))
+            inner[around[-1]].append((area, loop))
     made = [_component(area, loop, inner[i]) for i, (area, loop) in enumerate(outer)]
     return tuple(sorted(made, key=lambda part: -part.area))
 
@@ -174,10 +182,21 @@ Link = tuple[Curve, float, float, int | None, int | None]
 Loop = list[Link]
 
 
-def _pieces(legs: Legs) -> list[Link]:
-    """Return the pieces of all curves that bound the workspace."""
-    curves = legs.curves()
-    near = SAME_CROSSING * legs.size
+def _closed(legs: Legs) -> list[Loop]:
+    """Return the closed loops around the workspace."""
+    for near, slack in SAME:
+        loops = _loops(_pieces(legs, near * legs.size, slack * legs.size))
+        if loops is not None:
+            return loops
+    raise GspError(expected("strokes", DISTINCT, "curves whose pieces form no closed outlines"))
+
+
+def _pieces(legs: Legs, near: float, slack: float) -> list[Link]:
+    """Return the pieces of all curves that bound the workspace.
+
+    Crossings within `near` are one point, and curves within `slack` are one [length].
+    """
+    curves = legs.curves(slack)
     vertices: list[Array] = []
     on: list[dict[int, float]] = [{} for _ in curves]
     for i, j in combinations(range(len(curves)), 2):
@@ -195,7 +214,7 @@ def _pieces(legs: Legs) -> list[Link]:
         for link in _between(curve, ends):
             tested = link[1] + TESTED_SHARES * (link[2] - link[1])
             points = np.stack([curve.at(t) for t in tested])
-            if legs.allow(points, SAME_TOLERANCE * legs.size).all():
+            if legs.allow(points, slack).all():
                 found.append(link)
     return found
 
@@ -214,8 +233,11 @@ def _between(curve: Curve, ends: dict[int, float]) -> list[Link]:
     return [(curve, ends[a], stop, a, b) for (a, b), stop in zip(pairs, stops, strict=True)]
 
 
-def _loops(links: list[Link]) -> list[Loop]:
-    """Join pieces at their ends; where more than two meet, parts of the workspace are separated."""
+def _loops(links: list[Link]) -> list[Loop] | None:
+    """Join pieces at their ends; None if some form no closed loop.
+
+    Where more than two pieces meet, parts of the workspace are separated.
+    """
     leaving: dict[int | None, list[Link]] = defaultdict(list)
     for link in links:
         leaving[link[3]].append(link)
@@ -224,13 +246,12 @@ def _loops(links: list[Link]) -> list[Loop]:
         loop = [next(way for way in leaving.values() if way).pop()]
         while loop[-1][4] != loop[0][3]:
             choices = leaving[loop[-1][4]]
-            if not choices:  # a piece that is a point up to rounding is missing
-                break
+            if not choices:
+                return None
             best = max(choices, key=lambda link: _left_turn(loop[-1], link))
             choices.remove(best)
             loop.append(best)
-        else:
-            loops.append(loop)
+        loops.append(loop)
     return loops
 
 

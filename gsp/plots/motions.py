@@ -116,6 +116,8 @@ def _checked(path: Path | Pose) -> Path:
 
 
 def _film(design: Design, path: Path, table: Any, most: int, seconds: float) -> Film:
+    from matplotlib.ticker import MaxNLocator
+
     n = path.pose.size
     shown = np.unique(np.linspace(0, n - 1, min(most, n)).round().astype(int))
     columns = [] if table is None else index_columns(table)
@@ -123,6 +125,8 @@ def _film(design: Design, path: Path, table: Any, most: int, seconds: float) -> 
     for name, ax in zip(columns, curves, strict=True):
         along(table, name, ax)
         ax.set_title("", loc="left")
+        if SAMPLE in path.coordinates:
+            ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     if path.motion:
         figure.suptitle(plain(path.motion), fontsize=10)
     scene = _Scene(space, design, path.pose[shown])

@@ -15,7 +15,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import hull
-from gsp.plots.common.labels import drawn_places, free_places
+from gsp.plots.common.labels import covered, drawn_places, free_places
 from gsp.plots.common.style import BLUE, GREY, LEGS, SHORT_NAME, axes_or_new, plain, title_text
 
 if TYPE_CHECKING:
@@ -36,6 +36,8 @@ LABEL_DISTANCES = (14.0, 20.0, 28.0, 38.0)
 MARGIN_SHARE = 0.14
 # Directions of labels from joints, and what turning one by 180° costs [area of a letter].
 LABEL_ANGLES, OPPOSITE_COST = np.arange(24) * np.pi / 12.0, 1.0
+# How much worse a name on a line is than on another name or a mark, as an area: lines are thin.
+STRUCK_SHARE = 3.0
 
 
 def plan_view(
@@ -202,8 +204,13 @@ def _places(ax: Axes, joints: list[tuple[str, Array, Array]], spans: Array) -> l
     middles = np.array(numbers).reshape(-1, 2)
     rings = np.concatenate((middles - 0.5 * JOINT_CIRCLE, middles + 0.5 * JOINT_CIRCLE), axis=1)
     # Numbers are on the legs, names beside all lines.
-    taken = np.concatenate((taken, rings, drawn_places(ax)))
-    names = free_places([a[0] for a in around], sizes, taken, [a[1] for a in around])
+    lines = drawn_places(ax)
+    taken = np.concatenate((taken, rings, lines))
+    costs = [
+        cost + STRUCK_SHARE * covered(at, size, lines)
+        for (at, cost), size in zip(around, sizes, strict=True)
+    ]
+    names = free_places([a[0] for a in around], sizes, taken, costs)
     back = ax.transData.inverted().transform(np.array([*numbers, *names]) * per_point)
     return [[float(x), float(y)] for x, y in back]
 

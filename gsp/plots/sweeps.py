@@ -24,7 +24,7 @@ from gsp.plots.common.fields import (
     write_constant,
     write_undrawable,
 )
-from gsp.plots.common.scales import scale_of
+from gsp.plots.common.scales import number_format, scale_of
 from gsp.plots.common.style import (
     BLUE,
     SHORT_NAME,
@@ -218,7 +218,7 @@ def _over_plane(
         return ax
     colours = COLOURS if INDICES[name].better == "higher" else REVERSED
     filled = draw_field(ax, x, y, values, scale, levels, colours=colours)
-    ax.figure.colorbar(filled, ax=ax, shrink=0.8, format="%.4g")
+    ax.figure.colorbar(filled, ax=ax, shrink=0.8, format=number_format(filled.levels))
     return ax
 
 

@@ -226,12 +226,17 @@ def test_terminal_without_unicode(tmp_path):
     assert b"|d|" in done.stdout
 
 
+def without_waiting(text):
+    """The messages of a command, without the lines of one that takes longer than 10 s."""
+    return re.sub(r"(?m)^gsp: working for \d+ s.*\n", "", text)
+
+
 def test_module_and_closed_pipe(tmp_path):
     """`python -m gsp catalogue | head -1` ends without a traceback."""
     command = f'"{sys.executable}" -m gsp catalogue | head -1'
     done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120)
     assert done.stdout.startswith("name")
-    assert done.stderr == ""
+    assert without_waiting(done.stderr) == ""
 
 
 def test_the_files_of_a_command_are_written_though_nobody_reads_its_output(tmp_path):
@@ -244,7 +249,7 @@ def test_the_files_of_a_command_are_written_though_nobody_reads_its_output(tmp_p
         stdout=write, stderr=subprocess.PIPE, text=True, timeout=120, cwd=tmp_path, check=False,
     )  # fmt: skip
     os.close(write)
-    assert (done.returncode, done.stderr) == (1, "")
+    assert (done.returncode, without_waiting(done.stderr)) == (1, "")
     assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
     assert sorted(p.name for p in tmp_path.iterdir()) == ["t.csv", "t.csv.json"]
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gsp.errors import InvalidInput, MissingParameter
-from gsp.planar import PlanarDesign, planar_components, planar_design, planar_section
+from gsp.errors import GspError, InvalidInput, MissingParameter
+from gsp.planar import PlanarDesign, outlines, planar_components, planar_design, planar_section
 
 SAMPLES = 20_000
 
@@ -145,6 +145,42 @@ def test_closed_forms():
     )
     parts = planar_components(crossed)  # two pairs of strips
     assert [part.area for part in parts] == pytest.approx([2.0] * 4, rel=1e-14)
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-13, -4e-12, 3e-10, -1.6e-9, 4e-9, 3e-8, -1e-7, 2e-6])
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_outlines_of_curves_that_nearly_touch_or_coincide(gap, turn):
+    """Circles that touch from outside and from inside, two of which nearly coincide."""
+    c, s = np.cos(turn), np.sin(turn)
+    spin = np.array([[c, -s], [s, c]])
+    at = np.zeros((3, 2))
+    # Holes of radius 0.5 about (0, 0) and (1, 0) touch, and the first touches the outline.
+    base = np.array([[0.0, 0.0], [1.0, 0.0], [1.0 + gap, gap]]) @ spin.T
+    strokes = [[0.5, 2.0], [0.5, 1.5], [0.5 + gap, 1.5 + 2.0 * gap]]
+    parts = planar_components(PlanarDesign(["D1"] * 3, base, at, strokes=strokes))
+    overlap = lens(1.0, 2.0, 1.5)
+    assert sum(part.area for part in parts) == pytest.approx(overlap - np.pi / 2, abs=2e-4)
+    # A disc that touches the ring from inside, cut by a third.
+    base = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0]]) @ spin.T
+    strokes = [[1.0, 3.0], [0.0, 1.0 - gap], [0.0, 2.0 + gap]]
+    parts = planar_components(PlanarDesign(["D1"] * 3, base, at, strokes=strokes))
+    overlap = lens(np.sqrt(2.0), 1.0, 2.0)
+    assert sum(part.area for part in parts) == pytest.approx(overlap, abs=2e-4)
+
+
+def lens(apart, one, other):
+    """Area that two discs have in common, by their sectors and triangles."""
+    a = np.arccos((apart**2 + one**2 - other**2) / (2.0 * apart * one))
+    b = np.arccos((apart**2 + other**2 - one**2) / (2.0 * apart * other))
+    return one**2 * (a - np.sin(2 * a) / 2) + other**2 * (b - np.sin(2 * b) / 2)
+
+
+def test_pieces_that_form_no_outline_are_an_error(monkeypatch):
+    ring = PlanarDesign(["D1"] * 3, np.eye(3, 2), np.zeros((3, 2)), strokes=[[0.0, 1.0]] * 3)
+    pieces = outlines._pieces
+    monkeypatch.setattr(outlines, "_pieces", lambda *given: pieces(*given)[1:])
+    with pytest.raises(GspError, match=r"^strokes: expected limits .* form no closed outlines"):
+        planar_components(ring)
 
 
 def test_an_angle_leg_allows_an_angle_or_not():

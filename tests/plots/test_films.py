@@ -77,6 +77,17 @@ def test_poses_of_a_motion_are_numbered():
     assert film.figure.axes[1].get_xlim() == (0.0, 6.0)
 
 
+def test_axes_of_few_numbered_poses_have_whole_numbers_and_labels_stay_apart():
+    film = gsp.plots.animate(LIFT.replace(unit="mm"), TURN.pose[:3], ["CTN", "|det J|"])
+    space, *panels = film.figure.axes
+    film.figure.draw_without_rendering()
+    for ax in panels:
+        ticks = ax.get_xticks()
+        assert len(ticks) >= 2
+        assert (ticks == ticks.round()).all()
+        assert space.zaxis.label.get_window_extent().x1 + 10.0 < ax.get_tightbbox().x0
+
+
 def test_an_index_without_a_value_is_named():
     """λ is undefined, as the design is singular in every pose."""
     design = gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)

@@ -91,6 +91,24 @@ def test_names_and_numbers_do_not_cover_each_other(name):
         assert all(ax.bbox.containsx(x) for x in (box.x0, box.x1))
 
 
+@pytest.mark.parametrize("name", ["workspace-6-3", "rubin-m2-hexapod", "nawratil-k-plus"])
+def test_lines_of_legs_do_not_run_through_names(name):
+    design = gsp.catalogue.design(name)
+    ax = gsp.plots.plan_view(design)
+    ax.figure.canvas.draw()
+    legs = [line for line in ax.lines if line.get_linewidth() == 2.0]
+    assert len(legs) == design.n_legs
+    names = [text for text in ax.texts if not text.get_text().isdigit()]
+    assert names
+    for line in legs:
+        ends = ax.transData.transform(line.get_xydata())
+        way = ends[0] + np.linspace(0.0, 1.0, 500)[:, None] * (ends[1] - ends[0])
+        for text in names:
+            box = text.get_window_extent().padded(-1.0)
+            assert not any(box.contains(*point) for point in way), text.get_text()
+    plt.close(ax.figure)
+
+
 def test_joints_close_to_each_other_have_their_own_names():
     platform = circle(0.6, HEXAGON)
     platform[1] = platform[0] + [0.008, 0.0, 0.0]

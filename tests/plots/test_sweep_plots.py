@@ -14,7 +14,7 @@ import gsp
 from gsp import plots, sweeps
 from gsp.errors import GspError, InvalidInput
 from gsp.indices import INDICES
-from gsp.plots.common.scales import CONTOURED, levels_of, scale_of
+from gsp.plots.common.scales import CONTOURED, levels_of, number_format, scale_of
 from gsp.plots.common.style import log_ticks
 from tests import campaign
 from tests.plots.ink import assert_ink, ink
@@ -109,6 +109,32 @@ def test_levels_increase_and_lie_among_the_values(name, seed):
     # Not almost all poses lie between the same two levels, unless the scale is that of the bounds.
     counts = np.histogram(values, [-np.inf, *levels, np.inf])[0]
     assert bounded or counts.max() < 0.5 * values.size
+
+
+@pytest.mark.parametrize("width", [1e-7, 1e-4, 0.03, 1.0, 1e3])
+@pytest.mark.parametrize("name", ["condition_number", "control_number", "manipulability"])
+def test_numbers_of_levels_show_their_differences(name, width):
+    values = 0.7 + width * np.linspace(0.0, 0.2, 50)
+    if name == "condition_number":
+        values += 1.0
+    levels = levels_of(values, scale_of(values, name))
+    for shown in (levels, levels[::2]):
+        texts = [number_format(shown) % level for level in shown]
+        assert len(set(texts)) == len(texts)
+        errors = np.abs(np.array([float(text) for text in texts]) - shown)
+        assert errors.max() <= 0.02 * np.diff(shown).min()
+    assert number_format(np.array([0.1, 0.25, 0.5])) == "%.4g"
+
+
+def test_numbers_of_a_narrow_plane_differ():
+    path = sweeps.plane(DESIGN.home, [-1e-3, 0.0, 1e-3], [-1e-3, 0.0, 1e-3])
+    ax = plots.over_plane(gsp.sweep(DESIGN, path, "CTN"))
+    bar = ax.figure.axes[1]
+    ax.figure.canvas.draw()
+    texts = [text.get_text() for text in bar.get_yticklabels() if text.get_text()]
+    assert len(texts) > 3
+    assert len(set(texts)) == len(texts)
+    plt.close(ax.figure)
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -14,6 +14,7 @@ from gsp.cli.outputs.completeness import check_stopped
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput
+from gsp.figures import INK
 from gsp.files.tables import write_table
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -21,6 +22,7 @@ from gsp.planar import PlanarComponent, PlanarDesign, on_boundary, planar_compon
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
     from gsp.workspace import Section
 
@@ -210,4 +212,18 @@ def _draw(
     drawn = plots.section(
         mapped, axes=np.eye(3)[:2], unit=design.unit, title=f"{design.name}\n{held}"
     )
+    _fill(drawn, parts)
     save_picture(drawn, path, overwrite=force)
+
+
+def _fill(ax: Axes, parts: tuple[PlanarComponent, ...]) -> None:
+    """Fill components, without their holes, beneath what is drawn."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    for part in parts:
+        loops = [
+            np.concatenate([piece.points for piece in loop]) for loop in (part.outline, *part.holes)
+        ]
+        around = Outline.make_compound_path(*[Outline(loop, closed=True) for loop in loops])
+        ax.add_patch(PathPatch(around, facecolor=INK, alpha=0.1, linewidth=0.0, zorder=0.5))

@@ -8,7 +8,7 @@ import numpy as np
 
 from gsp.figures import INK
 from gsp.geometry.vectors import Array, Mask
-from gsp.plots.common.scales import Scale, levels_of
+from gsp.plots.common.scales import Scale, levels_of, number_format
 from gsp.plots.common.style import GREY
 
 if TYPE_CHECKING:
@@ -94,7 +94,12 @@ def draw_cells(
     shown = np.ma.masked_invalid(scale.clipped(values))
     mesh = ax.pcolormesh(*edges, shown.T, norm=_norm(steps, scale), cmap=colours)
     bar = ax.figure.colorbar(
-        mesh, ax=ax, shrink=0.8, format="%.4g", ticks=steps, extend=_extend(shown, steps)
+        mesh,
+        ax=ax,
+        shrink=0.8,
+        format=number_format(steps),
+        ticks=steps,
+        extend=_extend(shown, steps),
     )
     bar.minorticks_off()
     bar.set_label(label)
@@ -115,7 +120,7 @@ def _label(ax: Axes, lines: QuadContourSet) -> None:
 
     def write(**places: Any) -> Any:
         levels = np.asarray(lines.levels)[::2]
-        return ax.clabel(lines, levels, fmt="%.4g", fontsize=7, **places) or ()
+        return ax.clabel(lines, levels, fmt=number_format(levels), fontsize=7, **places) or ()
 
     first = write(inline=False)
     kept = [text.get_position() for text in first if _clear(ax, text.get_position())]

@@ -151,6 +151,23 @@ def levels_of(values: Array, scale: Scale) -> Array:
     return marks
 
 
+def number_format(levels: Array) -> str:
+    """Return the format of numbers on an axis: four digits, or as many as show their differences.
+
+    Each is written to a hundredth of its distance from the next.
+    """
+    marks = np.unique(levels)
+    if len(marks) < 2:
+        return "%.4g"
+    gaps = np.diff(marks)
+    near = np.minimum(np.append(gaps, gaps[-1]), np.insert(gaps, 0, gaps[0]))
+    for digits in range(4, 17):
+        written = np.array([float(f"{mark:.{digits}g}") for mark in marks])
+        if (np.abs(written - marks) <= 0.01 * near).all():
+            return f"%.{digits}g"
+    return "%.17g"
+
+
 def _decades(low: float, high: float) -> Array:
     """Return 1, 2, 5 times powers of ten around an interval, or of ten alone if those are many."""
     powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1.0)

@@ -143,9 +143,11 @@ def film_panels(count: int) -> tuple[Figure, Axes3D, list[Axes]]:
         figure = _new_figure(6.4, 5.6)
         return figure, cast("Axes3D", figure.add_subplot(projection="3d")), []
     figure = _new_figure(10.4, 5.6)
-    grid = figure.add_gridspec(count, 2, width_ratios=[3, 2])
+    # An empty column keeps the label of the vertical axis, which is outside of the axes in space,
+    # away from those of the panels.
+    grid = figure.add_gridspec(count, 3, width_ratios=[30, 3, 20])
     space = cast("Axes3D", figure.add_subplot(grid[:, 0], projection="3d"))
-    return figure, space, [figure.add_subplot(grid[row, 1]) for row in range(count)]
+    return figure, space, [figure.add_subplot(grid[row, 2]) for row in range(count)]
 
 
 def _new_figure(width: float, height: float) -> Figure:
