@@ -218,7 +218,7 @@ def _over_plane(
         return ax
     colours = COLOURS if INDICES[name].better == "higher" else REVERSED
     filled = draw_field(ax, x, y, values, scale, levels, colours=colours)
-    ax.figure.colorbar(filled, ax=ax, shrink=0.8, format=number_format(filled.levels))
+    ax.figure.colorbar(filled, ax=ax, shrink=0.8, format=number_format(np.asarray(filled.levels)))
     return ax
 
 
