@@ -28,7 +28,7 @@ from gsp.workspace.exact.spheres import SAME_TOLERANCE
 # How near crossings are one point, as shorter pieces are, and how near curves are one [shares of
 # the size]: where curves touch, half the digits are lost. Curves that nearly touch or coincide may
 # form no closed loops with the first pair; the first pair that closes all of them is taken.
-CLOSENESSES = ((1e-7, SAME_TOLERANCE), (1e-5, SAME_TOLERANCE), (1e-6, 1e-8), (1e-5, 1e-7), (1e-4, 1e-6))
+NEAR = ((1e-7, SAME_TOLERANCE), (1e-5, SAME_TOLERANCE), (1e-6, 1e-8), (1e-5, 1e-7), (1e-4, 1e-6))
 # Where pieces are tested [shares of their length]. Others may touch a curve there.
 TESTED_SHARES = np.array([0.21, 0.48, 0.83])
 # What is expected of curves that do not form outlines.
@@ -184,7 +184,7 @@ Loop = list[Link]
 
 def _closed(legs: Legs) -> list[Loop]:
     """Return the closed loops around the workspace."""
-    for near, slack in CLOSENESSES:
+    for near, slack in NEAR:
         loops = _loops(_pieces(legs, near * legs.size, slack * legs.size))
         if loops is not None:
             return loops
