@@ -13,11 +13,12 @@ import gsp
 from benchmarks.timing import Way, in_turn, markdown, rows
 from gsp.geometry.vectors import Array
 
-POSES, WIDTH = 4000, 0.05
+POSES, WIDTH, SAMPLES = 4000, 0.05, 100_000
 BY_HAND = "Newton's method by hand, numpy"
 ANGLES = np.deg2rad([[-10, 10, 110, 130, 230, 250], [-50, 50, 70, 170, 190, 290]])
 BASE, PLATFORM = np.stack((np.cos(ANGLES), np.sin(ANGLES), 0 * ANGLES), axis=-1)
 HEXAPOD = gsp.Design(["D1"] * 6, BASE, 0.6 * PLATFORM)
+HOME = gsp.Pose([0.0, 0.0, 1.0])
 BOX = gsp.PoseBox([(-0.2, 0.2), (-0.2, 0.2), (0.8, 1.2)], [(-0.3, 0.3)] * 3)
 
 
@@ -39,6 +40,14 @@ def by_hand(joints: Array, position: Array, rotation: Array) -> Array:
     return p
 
 
+def logged() -> gsp.Pose:
+    """Return poses of a machine that swings about a pose, at 1,000 samples per second."""
+    time = np.linspace(0.0, SAMPLES / 1000.0, SAMPLES)[:, None]
+    rates = np.array([3.0, 2.6, 2.2, 1.8, 3.4, 1.4])
+    widths = np.array([0.2, 0.2, 0.2, 0.3, 0.3, 0.3])
+    return HOME.moved(widths * np.sin(2.0 * np.pi * rates * time))
+
+
 def section(rounds: int) -> str:
     """Return the table of docs/performance.md."""
     rng = np.random.default_rng(0)
@@ -46,6 +55,7 @@ def section(rounds: int) -> str:
     guess = truth.moved(rng.uniform(-WIDTH, WIDTH, (POSES, 6)))
     joints, robot = HEXAPOD.at(truth).joints, gsp.prepare(HEXAPOD)
     each = [guess[i] for i in range(200)]
+    log = HEXAPOD.at(logged()).joints
 
     def residual(x: Array, i: int) -> Array:
         turn = Rotation.from_rotvec(x[3:]).as_matrix() @ guess.rotation[i]
@@ -72,6 +82,7 @@ def section(rounds: int) -> str:
             lambda: [gsp.forward(HEXAPOD, joints[i], each[i]) for i in range(200)], 200
         ),
         "`gsp.forward`, batch of 4,000": Way(lambda: gsp.forward(HEXAPOD, joints, guess), POSES),
+        "`gsp.track`, log of 100,000 samples": Way(lambda: gsp.track(HEXAPOD, log, HOME), SAMPLES),
     }
     times = in_turn(ways, rounds)
     return markdown(

@@ -178,10 +178,13 @@ def test_the_four_real_postures_are_counted_without_polynomials():
 
 def test_six_sps_legs_have_forty_modes():
     rng = np.random.default_rng(3)
-    for _ in range(count(15, 1000)):
+    designs = count(15, 1000)
+    for i in range(designs):
         design = gsp.Design(SIX, rng.standard_normal((6, 3)), rng.standard_normal((6, 3)))
-        modes = gsp.assembly_modes(design, design.at(POSE).joints)
+        proven = designs == 1000 or i < 3
+        modes = gsp.assembly_modes(design, design.at(POSE).joints, certify=proven)
         assert (modes.status, modes.n_complex) == ("found", 40)
+        assert modes.certified.all() == proven
         assert apart(modes, POSE).min() < 1e-7
         assert modes.residual.max() < 1e-12
         # Complex solutions come in pairs.
@@ -224,21 +227,27 @@ def test_the_known_pose_is_among_the_modes(name):
 
 
 def test_the_known_pose_is_among_the_modes_of_all_mechanisms():
+    """In full 100,035 pairs of a design and a pose, which take days."""
     names = ("D1^5 A1", "D1^3 D3 A1^2")
     for chosen in mechanisms() if count(1, 2) == 2 else map(mechanism, names):
-        _known_pose(chosen, np.random.default_rng(4), count(1, 10))
+        _known_pose(chosen, np.random.default_rng(4), count(1, 513))
 
 
 def _known_pose(chosen, rng, times):
-    number = confirmed_counts().get(chosen.name)
+    number, incomplete = confirmed_counts().get(chosen.name), 0
     for _ in range(times):
         design = random_design(rng, [leg.name for leg in chosen.legs])
         pose = random_pose(rng)
         modes = gsp.assembly_modes(design, design.at(pose).joints)
+        if modes.n_lost:  # which the status states
+            assert modes.status == "incomplete"
+            incomplete += 1
+            continue
         assert modes.status == "found"
         assert modes.n_paths == modes.n_complex == (number or modes.n_complex)
         assert apart(modes, pose).min() < 1e-6
         assert modes.residual.max() < 1e-12
+    assert incomplete <= 0.05 * times
 
 
 @pytest.mark.parametrize("share", [1e-3, 1e-5])
