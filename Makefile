@@ -87,12 +87,13 @@ bench: $(VENV)/.installed
 	$(BIN)/python -m benchmarks $(ARGS)
 
 # The last one needs OpenGL: egl or osmesa.
-## draw the pictures of the README, of docs/exploration.md and of docs/bridges.md
+## draw the pictures of the README, of docs/exploration.md, docs/app.md and docs/bridges.md
 pictures: $(VENV)/.installed
 	$(BIN)/gsp rank --out results/readme.csv --force
 	mkdir -p docs/images && cp results/readme.png docs/images/ranking.png
 	$(BIN)/gsp show toz-kucuk-2016-d1-d2-d3-d4-a1-2 --plot docs/images/mechanism.png --force
 	$(BIN)/python docs/images/placements.py
+	PYTHONPATH=. $(BIN)/python docs/images/app.py
 	MUJOCO_GL=$${MUJOCO_GL:-egl} $(BIN)/python docs/images/exotic.py
 
 $(BIN)/pip:

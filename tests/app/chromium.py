@@ -34,6 +34,22 @@ COLOURS = """new Promise(done => requestAnimationFrame(() => {
 }))"""
 
 
+# Where an element is, once it is in view, rests for two frames, and is what a click there hits.
+MIDDLE = """async function () {
+  let before = null;
+  for (const end = Date.now() + 20000; Date.now() < end;) {
+    this.scrollIntoViewIfNeeded();
+    const { x, y, width, height } = this.getBoundingClientRect();
+    const place = [x + width / 2, y + height / 2], hit = document.elementFromPoint(...place);
+    const free = hit && (this.contains(hit) || hit.contains(this));
+    if (free && before?.join() === place.join()) return place;
+    before = free ? place : null;
+    await new Promise(requestAnimationFrame);
+  }
+  throw new Error(`behind ${document.elementFromPoint(...before ?? [0, 0])?.outerHTML}`);
+}"""
+
+
 def executable():
     """The path of a browser on this machine, or None."""
     return next(filter(None, map(shutil.which, NAMES)), None)
@@ -106,19 +122,26 @@ class Tab:
             await asyncio.sleep(0.05)
         raise AssertionError(f"{role} {name!r}: {len(nodes)} elements; errors: {self.errors}")
 
+    async def middle(self, role, name):
+        """The middle of an element that is in view, at rest, and not behind another."""
+        await self.send("Page.bringToFront")
+        node = await self.send("DOM.resolveNode", backendNodeId=await self.named(role, name))
+        answer = await self.send(
+            "Runtime.callFunctionOn", objectId=node["object"]["objectId"],
+            functionDeclaration=MIDDLE, awaitPromise=True, returnByValue=True,
+        )  # fmt: skip
+        assert "value" in answer.get("result", {}), f"{role} {name!r} is not at rest: {answer}"
+        return answer["result"]["value"]
+
     async def click(self, role, name):
         """Click with the mouse on the middle of the element of a role and a name.
 
         Tabs behind others are not laid out, and have no accessibility tree.
         """
-        await self.send("Page.bringToFront")
-        node = await self.named(role, name)
-        await self.send("DOM.scrollIntoViewIfNeeded", backendNodeId=node)
-        box = (await self.send("DOM.getBoxModel", backendNodeId=node))["model"]["content"]
-        place = {"x": sum(box[0::2]) / 4.0, "y": sum(box[1::2]) / 4.0}
+        x, y = await self.middle(role, name)
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
             await self.send(
-                "Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, **place
+                "Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, x=x, y=y
             )
 
     async def enter(self, role, name, text):
@@ -144,10 +167,11 @@ class Tab:
 
     async def key(self, name, code):
         """Press a key, as a user does."""
-        for kind in ("keyDown", "keyUp"):
+        letter = {"text": "\r"} if name == "Enter" else {}  # buttons of the browser need it
+        for kind, more in (("keyDown", letter), ("keyUp", {})):
             await self.send(
                 "Input.dispatchKeyEvent", type=kind, key=name, code=name,
-                windowsVirtualKeyCode=code,
+                windowsVirtualKeyCode=code, **more,
             )  # fmt: skip
 
 
@@ -174,7 +198,8 @@ def launched(folder):
 async def tabs(port, downloads):
     """A function that opens a tab at an address.
 
-    The tabs share what a window without a history shares, and save files in a folder.
+    The tabs share what a window without a history shares, save files in a folder, and may read
+    what was copied.
     """
     import websockets
 
@@ -185,6 +210,10 @@ async def tabs(port, downloads):
     await whole.send(
         "Browser.setDownloadBehavior",
         behavior="allow", browserContextId=context, downloadPath=str(downloads),
+    )  # fmt: skip
+    await whole.send(
+        "Browser.grantPermissions",
+        browserContextId=context, permissions=["clipboardReadWrite", "clipboardSanitizedWrite"],
     )  # fmt: skip
     seen = [whole]
 

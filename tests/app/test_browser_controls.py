@@ -8,13 +8,14 @@ import re
 import urllib.error
 import urllib.request
 
+import numpy as np
 import pytest
 
 import gsp
-from gsp.app.state import motion
+from gsp.app.state import links, matrices, motion
 from gsp.app.state.session import started, with_frame
 from tests.app import chromium
-from tests.app.visiting import FACTS, SIX_THREE
+from tests.app.visiting import FACTS, SIX_THREE, TEXT
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytestmark = pytest.mark.skipif(
@@ -26,14 +27,6 @@ MESSAGE = "document.querySelector('.gsp-message[role=status]').innerText"
 
 def value(name):
     return f"Number(document.querySelector('[aria-label=\"{name} value\"]').value)"
-
-
-async def middle(tab, role, name):
-    """The middle of an element, in view."""
-    node = await tab.named(role, name)
-    await tab.send("DOM.scrollIntoViewIfNeeded", backendNodeId=node)
-    box = (await tab.send("DOM.getBoxModel", backendNodeId=node))["model"]["content"]
-    return sum(box[0::2]) / 4.0, sum(box[1::2]) / 4.0
 
 
 async def phone(tab):
@@ -71,7 +64,7 @@ def test_a_slider_by_mouse_keys_and_numbers(visit):
 
     async def work(tab):
         await tab.send("Page.bringToFront")
-        x, y = await middle(tab, "slider", "position z")
+        x, y = await tab.middle("slider", "position z")
         mouse = {"button": "left", "clickCount": 1, "y": y}
         await tab.send("Input.dispatchMouseEvent", type="mousePressed", x=x, **mouse)
         for step in range(1, 9):
@@ -132,11 +125,11 @@ def test_a_finger_moves_sliders_and_the_panel_of_a_tab_comes_into_view(visit):
 
     async def work(tab):
         await phone(tab)
-        x, y = await middle(tab, "slider", "position z")
+        x, y = await tab.middle("slider", "position z")
         await swipe(tab, [(x - 2 * step, y) for step in range(11)])
         await tab.until(f"{value('position z')} < {first - 1.0}")
         # Across the slider it scrolls the page, and moves nothing.
-        x, y = await middle(tab, "slider", "roll")
+        x, y = await tab.middle("slider", "roll")
         before = await tab.run("scrollY")
         await swipe(tab, [(x, y - 8 * step) for step in range(11)])
         await tab.until(f"scrollY > {before + 20}")
@@ -146,9 +139,81 @@ def test_a_finger_moves_sliders_and_the_panel_of_a_tab_comes_into_view(visit):
         tabs = "document.querySelector('.gsp-tabs').getBoundingClientRect().top"
         await tab.run("scrollTo(0, 0)")
         for name in ("Indices", "Plots"):
-            await swipe(tab, [await middle(tab, "tab", name)])
+            await swipe(tab, [await tab.middle("tab", name)])
             await tab.until(f"{tabs} - {scene} < 40 && {tabs} - {scene} >= 0")
         assert await tab.run("document.documentElement.scrollWidth") == 390
+
+    visit(work)
+
+
+# Pages of other machines by http have no such clipboard.
+NO_CLIPBOARD = """window.board = navigator.clipboard;
+Object.defineProperty(Navigator.prototype, 'clipboard', { value: undefined });0"""
+
+
+NOTES = "(document.querySelector('.q-notifications')?.innerText ?? '')"
+# Buttons of the dialog that are behind something, such as a note.
+COVERED = """[...document.querySelectorAll('.gsp-dialog button')].filter((one) => {
+  const { x, y, width, height } = one.getBoundingClientRect();
+  return !one.contains(document.elementFromPoint(x + width / 2, y + height / 2));
+})"""
+
+
+def test_copies_and_a_hexapod_of_the_dialog(visit):
+    state = motion.nudged(started(gsp.catalogue.design(SIX_THREE)), "x", 1)
+
+    async def work(tab):
+        await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
+        await tab.click("button", "position x plus")
+        await tab.until(f"{value('position x')} > 0")
+        await tab.click("button", "Jacobian matrix")
+        await tab.until("document.querySelector('.gsp-matrix')?.innerText")
+        copied = "(window.board ?? navigator.clipboard).readText()"
+        for kind in matrices.FORMATS:
+            await tab.click("button", f"Copy as {kind}")
+            await tab.until(f"{NOTES}.includes('Copied as {kind}')")
+            assert await tab.run(copied) == matrices.as_text(state, matrices.PLAIN, kind)
+            assert await tab.run(f"{COVERED}.map(one => one.innerText)") == []
+            if "numpy" in kind:  # the first one
+                await tab.run(NO_CLIPBOARD)
+        assert await tab.run("navigator.clipboard === undefined")
+        await tab.key("Escape", 27)
+        await tab.until("!document.querySelector('.q-dialog')")
+        await tab.click("button", "File")
+        await tab.click("menuitem", "Copy a link to this state")
+        await tab.until(f"{NOTES}.includes('The link to this state was copied')")
+        assert (await tab.run(copied)).endswith(f"/?{links.query(state)}")
+        await tab.click("button", "Configuration")
+        await tab.click("tab", "Hexapod on circles")
+        await tab.enter("textbox", "Base radius", "3")
+        await tab.click("button", "OK: this hexapod")
+        design = gsp.hexapod(3.0, 20.0, 1.0, 20.0, 1.5, degrees=True)
+        wanted = f"{np.linalg.det(design.at(design.home).jacobian):.7g}".replace("-", "−")
+        await tab.until(f"{FACTS}.includes('{wanted}')")
+
+    visit(work)
+
+
+def test_the_ranking_is_sorted_by_keyboard(visit):
+    rows = "[...document.querySelectorAll('.q-table tbody tr')].map(e => e.innerText)"
+    sort = "document.querySelector('th[aria-sort]')?.ariaSort"
+    names = sorted(mechanism.name for mechanism in gsp.catalogue.mechanisms())
+
+    async def work(tab):
+        await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
+        await tab.click("tab", "Catalogue")
+        await tab.until(f"{TEXT}.includes('Not ranked yet')")
+        assert "No data" not in await tab.run(TEXT)
+        await tab.click("button", "Rank at this pose")
+        await tab.until(f"{rows}.length > 5")
+        # Without a length one mechanism has a value: it is first in both directions.
+        firsts = {"Mechanism": (names[0], names[-1]), "CTN": ("D1^6", "D1^6")}
+        for head, wanted in firsts.items():
+            for way, first in zip(("ascending", "descending"), wanted, strict=True):
+                await tab.send("DOM.focus", backendNodeId=await tab.named("button", head))
+                await tab.key("Enter", 13)
+                await tab.until(f"{sort} === '{way}'")
+                await tab.until(f"{rows}[0].split('\\t')[1].trim() === '{first}'")
 
     visit(work)
 

@@ -39,6 +39,11 @@ COPY = """async (text) => {
 SECONDS_TO_COPY = 5.0
 
 
+def notify(text: str, *, warning: bool = False) -> None:
+    """Show a note for some seconds, at the top: below it would cover buttons of tall dialogs."""
+    ui.notify(text, type="warning" if warning else None, position="top", multi_line=True)
+
+
 def named_dialog(name: str) -> ui.dialog:
     """Return a dialog that screen readers announce by its name."""
     return ui.dialog().props(f'aria-label="{name}"')
@@ -72,14 +77,12 @@ def file_dialog(
             read((await event.file.read()).decode("utf-8-sig"), event.file.name)
             dialog.close()
         except UnicodeDecodeError:
-            ui.notify(f"{event.file.name}: expected text in UTF-8", type="warning")
+            notify(f"{event.file.name}: expected text in UTF-8", warning=True)
         except GspError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
+            notify(str(error), warning=True)
 
     def rejected() -> None:
-        ui.notify(
-            f"file: expected one ending in {ending}, of at most {most:,} bytes", type="warning"
-        )
+        notify(f"file: expected one ending in {ending}, of at most {most:,} bytes", warning=True)
 
     with named_dialog(name) as dialog, ui.card().classes("gsp-dialog"):
         ui.html(f"<h2>{name}</h2>", sanitize=False)
@@ -253,7 +256,7 @@ def jacobian_dialog(client: Client) -> ui.dialog:
         try:
             text = matrices.as_text(client.state, form.value, kind)
         except GspError as error:
-            ui.notify(str(error), type="warning")
+            notify(str(error), warning=True)
             return
         await copy(text, f"Copied as {kind}")
 
@@ -282,6 +285,6 @@ async def copy(text: str, said: str) -> None:
     except TimeoutError:
         done = False
     if done:
-        ui.notify(said)
+        notify(said)
     else:
-        ui.notify("The browser did not copy the text", type="warning")
+        notify("The browser did not copy the text", warning=True)

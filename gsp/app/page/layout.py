@@ -9,7 +9,13 @@ from nicegui import ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
-from gsp.app.page.dialogs import configuration_dialog, copy, file_dialog, jacobian_dialog
+from gsp.app.page.dialogs import (
+    configuration_dialog,
+    copy,
+    file_dialog,
+    jacobian_dialog,
+    notify,
+)
 from gsp.app.page.mechanism import SCENE, MechanismView
 from gsp.app.page.panels.controls import legs_panel, motion_panel
 from gsp.app.page.panels.indices import indices_panel
@@ -118,7 +124,7 @@ def _link(client: Client) -> str:
     try:
         return links.query(client.state)
     except GspError as error:
-        ui.notify(str(error), type="warning", multi_line=True)
+        notify(str(error), warning=True)
         return ""
 
 
@@ -152,7 +158,7 @@ def _bar(client: Client) -> None:
             try:
                 client.load(started(choices.named(name)))
             except GspError as error:
-                ui.notify(str(error), type="warning")
+                notify(str(error), warning=True)
 
     def follow() -> None:
         name = client.state.design.name
