@@ -110,6 +110,9 @@ CALLS = {
     "gsp.workspace.sets.inside.samples.index_sample": lambda p: workspace.fixed_orientation(
         DESIGN, plane=PLANE_Y, resolution=20.0
     ).index_sample("CTN", 5, **p),
+    "gsp.workspace.sets.inside.worst.worst": lambda p: workspace.fixed_orientation(
+        DESIGN, plane=PLANE_Y, resolution=1.0
+    ).worst("σ_min", length=1.0, budget=1000, **p),
     "gsp.workspace.maps.index_map": lambda p: workspace.index_map(DESIGN, BOX, 1, ["CTN"], **p),
     "gsp.workspace.surfaces.surface": lambda p: workspace.surface(
         DESIGN, rotation=np.eye(3), counts=(2, 3), starts=1, **p

@@ -18,6 +18,7 @@ from gsp.indices import INDICES, index_name
 from gsp.indices.table import MAXIMUM_SHARES
 from gsp.limits import Limits
 from gsp.model.design import Design
+from gsp.progress import Report
 from gsp.proof.boxes import check_box
 from gsp.proof.branching.claims import value_at
 from gsp.proof.branching.enclosure import enclose
@@ -33,6 +34,8 @@ from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PART
 
 # Boxes of one round of the search, and default number of boxes of a search.
 EXTREMES_BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
+# Centres of which it is decided at first whether their values occur, then twice as many.
+CENTRES_COUNTED = 32
 # Boxes that are bounded at once: all quantities of one box take two kilobytes.
 BOXES_PER_BLOCK = 8192
 # The indices that have bounds.
@@ -342,12 +345,14 @@ def extreme(
     keep: Keep | None = None,
     counts: Keep | None = None,
     value: float = -np.inf,
+    report: Report = lambda done, total: None,
 ) -> Extreme:
     """Bound the greatest (side = 1) or the least (side = −1) value of a quantity over boxes.
 
     The boxes with the greatest bounds are halved; those whose bound is not above a value that
     occurs, or may be given as `value`, are left out, and those that `keep` leaves out. The value
-    at a centre occurs if `counts` is true there, by default everywhere.
+    at a centre occurs if `counts` is true there, by default everywhere. `report` is called after
+    each round with the number of boxes and the budget.
     """
     limits = _range(problem, place)
     out = _enclosed(problem, frame, box, place)
@@ -376,6 +381,7 @@ def extreme(
             halves = halves[keep(halves)]
         out = _enclosed(problem, frame, halves, place)
         n_boxes += len(halves)
+        report(min(n_boxes, budget), budget)
         value, point = _best(out, halves, side, value, point, counts)
         boxes = np.concatenate((boxes[rest], halves))
         bound = np.concatenate((bound[rest], _outer(out, side, limits)))
@@ -418,13 +424,17 @@ def _best(
     """Greatest value that certainly occurs, of the centres of boxes and what is known already."""
     values = quantity[:, MID_LOW] if side > 0.0 else -quantity[:, MID_HIGH]
     above = np.flatnonzero(values > value)
-    if counts is not None and above.size:
-        centres = 0.5 * (boxes[above, :6] + boxes[above, 6:])
-        above = above[counts(centres)]
-    if not above.size:
-        return value, point
-    i = above[values[above].argmax()]
-    return float(values[i]), 0.5 * (boxes[i, :6] + boxes[i, 6:])
+    # The greatest first: where one counts, the others need not be decided, which takes long.
+    above = above[np.argsort(-values[above], kind="stable")]
+    centres = 0.5 * (boxes[above, :6] + boxes[above, 6:])
+    done, block = 0, CENTRES_COUNTED
+    while done < len(above):
+        some = centres[done : done + block]
+        hits = np.flatnonzero(counts(some)) if counts is not None else np.zeros(1, dtype=np.intp)
+        if hits.size:
+            return float(values[above[done + hits[0]]]), some[hits[0]]
+        done, block = done + block, 2 * block
+    return value, point
 
 
 def halved(boxes: Array, parts: Array, length: float) -> tuple[Array, Array]:

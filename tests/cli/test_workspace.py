@@ -332,6 +332,10 @@ def test_orientations_at_a_position(tmp_path):
     assert sizes[table["status"] == "inside"].sum() / (8 * np.pi**2) <= high
     assert sizes.sum() / (8 * np.pi**2) >= low
     assert picture.stat().st_size > 1000
+    given = ("--orientations", "--position", 0, 0, 8, "--resolution", 15)
+    said = run(NAME, *given, "--out", tmp_path / "a.stl").stdout.replace("\n", " ")
+    share = float(re.search("at least ([0-9.]+) % of the orientations", said)[1])
+    assert 0.0 <= 100.0 * region.volume[0] / region.volume[1] - share < 0.1
 
 
 def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):
@@ -506,7 +510,7 @@ def test_indices_over_a_region_have_mean_worst_proof_global_and_share(tmp_path):
     mean, error, worst, proven, reciprocal, its_error = (float(row[k]) for k in (2, 4, 5, 7, 8, 10))
     assert abs(mean - own.mean()) < 4.5 * error
     assert abs(reciprocal - (1 / own).mean()) < 4.5 * its_error
-    # No point of the grid is beyond the bound, and a pose that is drawn comes near to the worst.
+    # No point of the grid is beyond the bound, and what is found comes near to the worst.
     assert 0.85 * own.max() < worst <= proven
     assert own.max() <= proven < 1.1 * own.max()
     share = re.search(rf"with CDN_CL <= {most}: (\S+) ± (\S+)", result.stdout)
@@ -515,7 +519,8 @@ def test_indices_over_a_region_have_mean_worst_proof_global_and_share(tmp_path):
     table = pd.read_csv(out)
     assert len(table) == 4000
     assert list(table)[:4] == ["x", "y", "z", "angle_1"]
-    assert table["condition_number"].max() == pytest.approx(worst, rel=1e-3)
+    # The search for the bound finds worse poses than those that are drawn.
+    assert table["condition_number"].max() <= worst * (1 + 1e-3)
     assert "in each cell, 4000 poses" in picture.read_text(encoding="utf-8")
 
 

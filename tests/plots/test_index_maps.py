@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 import gsp
 from gsp.errors import InvalidInput
@@ -167,6 +168,15 @@ def test_cells_of_a_sample_have_the_values_of_the_poses_within(sampled, value, i
     assert "in each cell, 2000 poses" in ax.get_title()
     assert not overlaps(ax)
     assert_ink(ax.figure)
+
+
+def test_cells_of_a_sample_end_where_the_plane_is_proven_outside(sampled):
+    ax = index_map(sampled, NAMES[0])
+    path = ax.collections[0].get_clip_path().get_fully_transformed_path()
+    places = np.random.default_rng(4).uniform(*sampled.region.extents[1], (500, 2))
+    possible = sampled.region.polygons().possible
+    shown = path.contains_points(ax.transData.transform(places))
+    assert np.array_equal(shown, shapely.contains_xy(possible, places))
 
 
 def test_samples_are_drawn_over_other_coordinates(sampled):

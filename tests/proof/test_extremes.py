@@ -12,6 +12,8 @@ import gsp
 from gsp.errors import InvalidInput, MissingParameter, UnknownIndex
 from gsp.proof.branching import search
 from gsp.proof.distance import least_distances
+from gsp.proof.extremes import _best
+from gsp.variation.layout import MID_HIGH, MID_LOW
 from tests.campaign import count
 from tests.proof.proofs import KINDS, around, hexapod, poses_in, singular_design
 from tests.support import moved, random_design, turn
@@ -21,6 +23,34 @@ UP = gsp.Pose([0.0, 0.0, 1.5])
 
 
 # --- bounds ---
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_best_centre_is_the_best_of_those_that_count_and_few_are_decided(side):
+    rng = np.random.default_rng(7)
+    for share in (0.0, 0.002, 0.3):
+        boxes, quantity = rng.normal(size=(2000, 12)), rng.normal(size=(2000, 10))
+        quantity[::9] = np.nan
+        quantity[:, MID_HIGH] = quantity[:, MID_LOW]
+        centres = 0.5 * (boxes[:, :6] + boxes[:, 6:])
+        hits = rng.random(2000) < share
+        decided = []
+
+        def counts(points, centres=centres, hits=hits, decided=decided):
+            numbers = [int(np.flatnonzero((centres == p).all(axis=1))[0]) for p in points]
+            decided.extend(numbers)
+            return hits[numbers]
+
+        value, point = _best(quantity, boxes, side, 0.5, boxes[0, :6], counts)
+        values = side * quantity[:, MID_LOW]
+        allowed = np.flatnonzero(hits & (values > 0.5))
+        if not allowed.size:
+            assert (value, list(point)) == (0.5, list(boxes[0, :6]))
+            continue
+        best = allowed[values[allowed].argmax()]
+        assert value == values[best]
+        np.testing.assert_array_equal(point, centres[best])
+        assert len(decided) <= max(32, 4 * (values > value).sum())
 
 
 @pytest.mark.parametrize("index", ["CDN_CL", "σ_min", "d2"])

@@ -17,11 +17,11 @@ from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
 from gsp.figures import name_lengths, new_axes
 from gsp.model.units import METRES_PER_UNIT
 from gsp.workspace.sets.shapes import files, inscribed
-from gsp.workspace.sets.shapes.clipped import boxes_beyond, corners_beyond
+from gsp.workspace.sets.shapes.clipped import corners_beyond
 from gsp.workspace.sets.shapes.drawing import _even, _outlined, _proven
 from gsp.workspace.sets.shapes.polygons import Polygons
 from gsp.workspace.sets.surfaces import meshes
-from gsp.workspace.sets.tree.cuts import no_cuts
+from gsp.workspace.sets.tree.cuts import boxes_beyond, no_cuts
 from tests import campaign
 
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
@@ -164,12 +164,47 @@ def test_only_holes_with_a_proven_part_outside_are_outlined():
     inside = square.difference(hole).difference(gap)
     drawn = _outlined(Polygons(inside=inside, possible=square.difference(hole.buffer(-0.1))))
     assert drawn.equals(square.difference(hole))
+    # Cells that share a corner have it to rounding only.
+    slit = gap.buffer(-1e-11)
+    drawn = _outlined(
+        Polygons(inside=square.difference(gap), possible=square.difference(gap).union(slit))
+    )
+    assert drawn.equals(square)
+
+
+def test_undecided_bays_that_are_narrower_than_the_outline_are_not_outlined():
+    square, hole = shapely.box(0, 0, 4, 4), shapely.box(1, 1, 2, 2)
+    narrow, wide = shapely.box(3.0, 2.0, 3.02, 4.0), shapely.box(2.0, 3.0, 2.5, 4.0)
+    inside = square.difference(hole).difference(narrow).difference(wide)
+    drawn = _outlined(Polygons(inside=inside, possible=square.difference(hole)))
+    assert drawn.symmetric_difference(square.difference(hole).difference(wide)).area < 1e-3
+    assert len(drawn.geoms) == 1
+    assert len(drawn.geoms[0].interiors) == 1
+    # A gap that is proven outside stays.
+    drawn = _outlined(Polygons(inside=inside, possible=inside))
+    assert drawn.equals(inside)
+
+
+def test_undecided_parts_are_filled_as_hatches_are_coarser_than_some():
+    looks = {patch.get_label(): patch for patch in flat().plot().patches}
+    assert looks["undecided"].get_facecolor()[:3] not in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
+    assert looks["undecided"].get_facecolor()[3] == 1.0
 
 
 def test_a_plane_is_drawn_with_what_its_coordinates_count_from():
     away = ([0.0, 0.0, 1.25], PLANE[1])
     ax = gsp.workspace.fixed_orientation(SHELL, plane=away, resolution=1.0).plot()
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [mm]", "z − 1.25 [mm]")
+
+
+def test_a_search_of_bodies_that_ends_early_states_it(monkeypatch):
+    done = flat().largest("ball")
+    monkeypatch.setattr(inscribed, "MOST_CENTRES", 1)
+    found = flat().largest("ball", tolerance=1e-6)
+    assert not found.reached
+    assert found.factor <= done.above
+    assert found.above >= done.factor
+    assert found.gap > 1e-6
 
 
 # Half of a shell of radii 1 and 2: bodies above the inner sphere that touch the outer one.
@@ -184,6 +219,8 @@ def test_a_plane_is_drawn_with_what_its_coordinates_count_from():
 def test_largest_bodies_of_half_a_shell(body, size):
     found = solid().largest(body)
     assert found.factor <= size <= found.above
+    assert found.reached
+    assert found.gap == pytest.approx((found.above - found.factor) / found.factor)
     assert found.above - found.factor < 0.35 * size
     rng = np.random.default_rng(0)
     points = rng.uniform(-1.0, 1.0, (2000, 3))

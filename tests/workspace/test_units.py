@@ -96,7 +96,7 @@ FLAT = [17, 26, 28, 50, 63, 80]
             (2, "cones", [3, 4, 5]),
         ],
         2,
-    ),  # fmt: skip
+    ),
 )
 def test_ends_and_their_checks_are_the_same_in_units_that_round(legs, kind, rays):
     headings = np.random.default_rng(2).normal(size=(96, 3))[list(rays)]

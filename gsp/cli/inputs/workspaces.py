@@ -70,10 +70,9 @@ def orientation_words(box: Array | None, order: str, *, some: bool = False) -> s
     """Return the words for any orientation, one, or those of a range: all, or some of them."""
     if box is None:
         return "any orientation"
-    if not is_range(box):
-        return f"angles {' '.join(f'{angle:g}°' for angle in box[:, 0])} ({order})"
-    ends = " ".join(f"{low:g}°…{high:g}°" if high > low else f"{low:g}°" for low, high in box)
-    return f"{'some' if some else 'all'} of the angles {ends} ({order})"
+    from gsp.workspace.sets.shapes.titles import range_words
+
+    return range_words(box, order, some=some)
 
 
 def limit_words(

@@ -77,6 +77,6 @@ def share_in(region: Region, path: Path) -> str:
     if region.kind == "plane" or path.suffix.lower() not in SOLID:
         return ""
     low, high = region.bracket
-    return (
-        f": what is proven inside, at least {rounded_down(100.0 * low / high, 3):g} % of the volume"
-    )
+    what = "orientations" if region.kind == "orientations" else "volume"
+    share = rounded_down(100.0 * low / high, 3)
+    return f": what is proven inside, at least {share:g} % of the {what}"

@@ -222,8 +222,11 @@ def _save(region: Region, files: Files, title: str, content: Content | None) -> 
     elif files.plot is not None:
         from gsp.figures import style
         from gsp.plots.common.style import title_text
+        from gsp.workspace.sets.shapes.titles import heading
 
         axes = region.plot() if content is None else content.draw()
+        # These lines state what was asked for, in the words of the options.
+        rest = axes.get_title().removeprefix(heading(region) + "\n")
         with style():
-            axes.set_title(f"{title_text(title)}\n{axes.get_title()}", fontsize="medium")
+            axes.set_title(f"{title_text(title)}\n{rest}", fontsize="medium")
         save_picture(axes, files.plot, overwrite=files.force)

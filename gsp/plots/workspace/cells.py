@@ -96,10 +96,13 @@ def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, valu
             ax.set_aspect("equal")
         title = f"{value} {symbol_text(name)} in each cell, {sample.pose.size} poses"
         ax.set_title(title, fontsize="medium")
+        before = {*ax.collections, *ax.patches}
         fill(ax, sample.region.problem.design, name, edges, values)
         hatch(ax, edges, feasible & np.isnan(values))
         if sorted(chosen) == ["u", "v"] and chosen[0] == "u":
-            draw_outline(sample.region, ax)
+            # The poses are in the region, but squares around them reach beyond it.
+            cells = {*ax.collections, *ax.patches} - before
+            draw_outline(sample.region, ax, cells)
     return ax
 
 

@@ -16,11 +16,13 @@ from gsp.geometry.rotations import moving_places, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.limits import Limits
+from gsp.progress import Progress, meter
 from gsp.proof.branching.claims import value_at
 from gsp.proof.branching.requirements import with_maximum
 from gsp.proof.extremes import bounded_name, extreme, index_problem, is_closed
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE
 from gsp.workspace.sets.inside.patches import patches
+from gsp.workspace.sets.tree.cuts import boxes_beyond
 from gsp.workspace.sets.tree.verdicts import verdicts
 
 
@@ -54,11 +56,12 @@ def worst(
     ellipsoid: Ellipsoid | None,
     maximum: float | None,
     budget: int,
+    progress: Progress,
 ) -> Worst:
     """Return the worst value of an index over a region: see `gsp.workspace.Region.worst`."""
     name, share = bounded_name(index), check_positive("tolerance", tolerance)
     most = check_integer("budget", budget, 1)
-    boxes = patches(region)
+    boxes = _possible(region, patches(region))
     if not (region.codes == INSIDE).any():
         raise EmptyWorkspace(expected("region", "a whole cell that is proven inside", "none"))
     # That of the design itself: in the frame of the region it has no home pose.
@@ -78,10 +81,24 @@ def worst(
     def counts(points: Array) -> Array:
         return np.asarray(region._decide(_coordinates(region, points)) == INSIDE)
 
-    end = extreme(problem, turns, boxes, place, side, share, most, keep=keep, counts=counts)
+    options: dict[str, Any] = {"keep": keep, "counts": counts}
+    with meter(progress, "boxes") as report:
+        end = extreme(
+            problem, turns, boxes, place, side, share, most + len(boxes), report=report, **options
+        )
     pose, bound = _pose(region.problem, end.point), end.bound / factor
     value = value_at(region.problem.design, pose, name, given)
     return Worst(value=value, bound=bound, pose=pose, closed=is_closed(bound, value, share))
+
+
+def _possible(region: Any, boxes: Array) -> Array:
+    """Return the boxes of poses without what the cuts of their cells prove to be outside."""
+    if region.kind == "orientations":
+        return boxes
+    d = region.low.shape[1]
+    low, high = boxes_beyond(region.low, region.high, region.cuts[:, :4])
+    boxes[:, :d], boxes[:, 6 : 6 + d] = low, high
+    return np.asarray(boxes[((high > low) | (region.high == region.low)).all(axis=1)])
 
 
 def _coordinates(region: Any, points: Array) -> Array:

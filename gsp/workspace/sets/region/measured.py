@@ -18,7 +18,7 @@ from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region.sampling import Estimate, drawn, share_error
 from gsp.workspace.sets.tree.boxes import ALL_ROTATIONS, FACE_TOLERANCE, located, turn_measure
-from gsp.workspace.sets.tree.cuts import shares
+from gsp.workspace.sets.tree.cuts import shares, undecided_boxes
 
 # Sums of volumes are widened by this share for rounding.
 VOLUME_ROUNDING = 1e-12
@@ -122,14 +122,20 @@ class Measured(ReadOnly):
 
     @property
     def resolution(self) -> float:
-        """Longest side of an undecided cell, 0 if there is none [length; of orientations rad].
+        """Longest side of what stays undecided, 0 if nothing does [length; of orientations rad].
 
-        It is above the resolution that was wanted where the budget ended the search.
+        Of an undecided cell only the part counts that no plane of `cuts` decides: the longest side
+        of the box around it. It is above the resolution that was wanted where the budget ended the
+        search.
 
         *Source: ours; see docs/sets.md*
         """
         open_ = self.codes == UNDECIDED
-        return float((self.high[open_] - self.low[open_]).max(initial=0.0))
+        low, high = undecided_boxes(self.low[open_], self.high[open_], self.cuts[open_])
+        sides = high - low
+        # A box without width holds nothing, but for cells that are no wider.
+        none = ((sides <= 0.0) & (self.high[open_] > self.low[open_])).any(axis=1)
+        return float(sides[~none].max(initial=0.0))
 
     @property
     def empty(self) -> bool:
@@ -139,7 +145,8 @@ class Measured(ReadOnly):
     def contains(self, points: ArrayLike) -> NDArray[np.int8]:
         """Return the codes of points: 1 inside, 0 undecided, −1 outside.
 
-        Points in undecided cells are decided one by one, which leaves very few undecided.
+        Points of undecided cells that are in no proven part are decided one by one, which leaves
+        very few undecided.
 
         Parameters
         ----------
@@ -165,7 +172,7 @@ class Measured(ReadOnly):
             raise InvalidInput(expected("points", "shape (..., 3)", f"shape {given.shape}"))
         flat = given.reshape(-1, width)
         local, beside = self._local(flat)
-        codes = located(local, self.low, self.high, self.codes, self.domain)
+        codes = located(local, self.low, self.high, self.codes, self.domain, self.cuts)
         codes[beside] = OUTSIDE
         open_ = np.flatnonzero(codes == UNDECIDED)
         if open_.size:

@@ -126,6 +126,7 @@ class Posed(Shaped):
         ellipsoid: Ellipsoid | None = None,
         maximum: float | None = None,
         budget: int = 100_000,
+        progress: Progress = None,
     ) -> Worst:
         """Return the worst value of an index over the region, with a proven bound.
 
@@ -142,7 +143,9 @@ class Posed(Shaped):
         maximum : float or None [unit of |det J|]
             For λ; default `gsp.determinant.reference(design).value`.
         budget : int
-            Most boxes of the search.
+            Most boxes of the search, besides those of the cells.
+        progress : function (done, total), bool or None
+            Called with the number of boxes done, and `budget`. False: no output; else a bar.
 
         Returns
         -------
@@ -172,7 +175,7 @@ class Posed(Shaped):
         """
         from gsp.workspace.sets.inside.worst import worst
 
-        return worst(self, index, tolerance, length, ellipsoid, maximum, budget)
+        return worst(self, index, tolerance, length, ellipsoid, maximum, budget, progress)
 
     def regular_parts(
         self, budget: int = 50_000, *, progress: Progress = None

@@ -126,9 +126,10 @@ class Region(Posed):
             of a ball are equal, as are the first two of a cylinder.
         tolerance : float [1]
             Relative gap to the largest body in the cells at which the search ends, at the latest
-            after 100,000 centres. The gap between `factor` and `above` is that of the undecided
-            cells too, which only a finer resolution makes smaller. Most of the time goes into
-            the faces of the cells: with 0.001 it takes up to twice the time of 0.01.
+            after 100,000 centres: `Inscribed.reached` states which. The gap between `factor` and
+            `above` is that of the undecided cells too, which only a finer resolution makes
+            smaller. Most of the time goes into the faces of the cells: with 0.001 it takes up to
+            twice the time of 0.01.
 
         Returns
         -------

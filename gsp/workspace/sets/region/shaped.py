@@ -54,11 +54,12 @@ class Shaped(Measured):
 
         A plane is filled, its outline bold, and what is undecided hatched; in space, and for
         orientations, what is proven inside is drawn: cells, and the proven parts of undecided ones.
+        The title has the design, the plane, the orientations, and the measure.
 
         Parameters
         ----------
         ax : matplotlib Axes or None
-            Default a new figure.
+            Default a new figure. Axes with a title keep it.
 
         Returns
         -------

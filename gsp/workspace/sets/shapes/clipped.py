@@ -1,4 +1,4 @@
-"""Corners and extents of the parts of boxes that lie on one side of a plane."""
+"""Corners of the parts of boxes that lie on one side of a plane."""
 
 from __future__ import annotations
 
@@ -26,25 +26,6 @@ def corners_beyond(low: Array, high: Array, plane: Array) -> Array:
     """
     around, kept = _sides(*_heights(low, high, plane))
     return np.asarray(around[kept])
-
-
-def boxes_beyond(low: Array, high: Array, plane: Array) -> tuple[Array, Array]:
-    """Return the least boxes that contain the parts n · δ ≥ c of boxes (n, d), d = 2 or 3.
-
-    They are wider by the rounding of the sums. Where there is no part they have no width along
-    some axis.
-    """
-    n, c = plane[:, : low.shape[1]], plane[:, 3:]
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    spans = np.abs(n) * half
-    total = spans.sum(axis=1, keepdims=True)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        # What the other coordinates leave for n_k δ_k.
-        least = (c - (total - spans) - 1e-12 * (np.abs(c) + total)) / np.abs(n)
-    # It is not finite without a plane, and along it.
-    least = np.where(np.isfinite(least), least, -half)
-    first = np.where(n > 0.0, np.clip(middle + least, low, high), low)
-    return first, np.where(n < 0.0, np.clip(middle - least, low, high), high)
 
 
 def _heights(low: Array, high: Array, plane: Array) -> tuple[Array, Array]:

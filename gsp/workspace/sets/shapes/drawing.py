@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -15,17 +15,23 @@ from gsp.geometry.vectors import Array, cross, norm
 from gsp.rounding import rounded_down, rounded_up
 from gsp.workspace.sets.codes import UNDECIDED
 from gsp.workspace.sets.shapes.clipped import corners_beyond
-from gsp.workspace.sets.shapes.polygons import Polygons, polygons, rings
+from gsp.workspace.sets.shapes.polygons import GRID_SHARE, Polygons, polygons, rings
+from gsp.workspace.sets.shapes.titles import direction_name, heading
 from gsp.workspace.sets.surfaces.meshes import surface
 from gsp.workspace.sets.tree.boxes import CONVENTION, TURNS
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 FILL, EDGE, HATCH = "#9ecae1", "#08306b", "#777777"
+# What is undecided is filled too: in parts that are smaller than the hatch no line of it would be.
+OPEN = "#e0e0e0"
 OUTLINE: Mapping[str, Any] = MappingProxyType(
     {"facecolor": "none", "edgecolor": EDGE, "linewidth": 1.5}
 )
+# Half of the width of that line as a share of the size of a region, and what is too small to see.
+LINE_SHARE, SLIVER_SHARE = 4e-3, 1e-5
 # Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
 MOST_TICKS = 6
 # Distances of a plane from zero below this share of the size of a region come from rounding.
@@ -33,7 +39,7 @@ PLANE_ROUNDING = 1e-9
 
 
 def draw(region: Any, ax: Axes | None) -> Axes:
-    """Return axes with a region."""
+    """Return axes with a region; those with a title keep it."""
     require_matplotlib()
     if region.empty:
         raise EmptyWorkspace(expected("region", "a cell or more", "an empty region"))
@@ -44,16 +50,20 @@ def draw(region: Any, ax: Axes | None) -> Axes:
     options = {} if region.kind == "plane" else {"projection": "3d"}
     with style():
         ax = new_axes(6.0, 5.4, **options) if ax is None else ax
-        return _flat(region, ax) if region.kind == "plane" else _solid(region, ax)
+        measure = _flat(region, ax) if region.kind == "plane" else _solid(region, ax)
+        if not ax.get_title():
+            ax.set_title(f"{heading(region)}\n{measure}", fontsize="medium")
+        return ax
 
 
-def _flat(region: Any, ax: Axes) -> Axes:
+def _flat(region: Any, ax: Axes) -> str:
+    """Draw a region in a plane; return the line of its area."""
     from matplotlib.patches import PathPatch
 
     outline = polygons(region)
     undecided = outline.possible.difference(outline.inside)
     looks: tuple[tuple[Any, Mapping[str, Any]], ...] = (
-        (undecided, {"facecolor": "none", "edgecolor": HATCH, "linewidth": 0.0, "hatch": "//////"}),
+        (undecided, {"facecolor": OPEN, "edgecolor": HATCH, "linewidth": 0.0, "hatch": "//////"}),
         (outline.inside, {"facecolor": FILL, "edgecolor": "none", "linewidth": 0.0}),
         (_outlined(outline), OUTLINE),
     )
@@ -65,16 +75,22 @@ def _flat(region: Any, ax: Axes) -> Axes:
     ax.autoscale_view()
     ax.set_aspect("equal")
     name_lengths(ax, dict(zip("xy", plane_labels(region), strict=True)), region.problem.design.unit)
-    ax.set_title(_measure("area", region.area, region.problem.design.unit, "²"), fontsize="medium")
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
-    return ax
+    return _measure("area", region.area, region.problem.design.unit, "²")
 
 
-def draw_outline(region: Any, ax: Axes) -> None:
-    """Draw the outline of what is proven inside of a region in a plane."""
+def draw_outline(region: Any, ax: Axes, filled: Iterable[Artist] = ()) -> None:
+    """Draw the outline of what is proven inside of a region in a plane.
+
+    `filled` are cut off where the plane is proven outside.
+    """
     from matplotlib.patches import PathPatch
 
-    path = _path(_outlined(polygons(region)))
+    outline = polygons(region)
+    possible = _path(outline.possible)
+    for artist in filled if possible is not None else ():
+        artist.set_clip_path(possible, ax.transData)
+    path = _path(_outlined(outline))
     if path is not None:
         ax.add_patch(PathPatch(path, **OUTLINE))
 
@@ -88,18 +104,39 @@ def plane_labels(region: Any) -> tuple[str, str]:
 
 
 def _outlined(outline: Polygons) -> Any:
-    """Return what is inside, with only those holes of which a part is proven outside.
+    """Return what is inside, without gaps that the line of the outline would fill.
 
-    Undecided cells in the midst would be dots as wide as the line.
+    Undecided cells in the midst, and bays of them that are narrower than the line, would be dots
+    and spots as wide as it. Holes are kept if a part of them is proven outside.
     """
     import shapely
 
+    ends = shapely.bounds(outline.possible).reshape(2, 2)
+    size = float((ends[1] - ends[0]).max())
+    # Corners of holes are those of `possible` to rounding only.
+    possible = outline.possible.buffer(10.0 * GRID_SHARE * size)
     parts = []
-    for part in getattr(outline.inside, "geoms", [outline.inside]):
+    inside = _without_bays(outline, size)
+    for part in getattr(inside, "geoms", [inside]):
         holes = [shapely.Polygon(ring) for ring in part.interiors]
-        kept = [hole.exterior for hole in holes if not outline.possible.covers(hole)]
+        kept = [hole.exterior for hole in holes if not possible.covers(hole)]
         parts.append(shapely.Polygon(part.exterior, kept))
     return shapely.MultiPolygon(parts)
+
+
+def _without_bays(outline: Polygons, size: float) -> Any:
+    """Return what is inside, and undecided bays that are narrower than the line of the outline."""
+    import shapely
+
+    wide = LINE_SHARE * size
+    closed = outline.inside.buffer(wide, join_style="mitre").buffer(-wide, join_style="mitre")
+    gaps = closed.difference(outline.inside).intersection(outline.possible)
+    bays = [gap for gap in getattr(gaps, "geoms", [gaps]) if gap.area > (SLIVER_SHARE * size) ** 2]
+    if not bays:
+        return outline.inside
+    # A little wider, so that rounding leaves no cracks.
+    wider = [bay.buffer(SLIVER_SHARE * size, join_style="mitre") for bay in bays]
+    return shapely.union_all([outline.inside, *wider])
 
 
 def _measure(what: str, bounds: tuple[float, float], unit: str, power: str) -> str:
@@ -120,26 +157,19 @@ def _path(shape: Any) -> Any:
     return Path.make_compound_path(*lines) if lines else None
 
 
-def _direction(v: Array) -> str:
-    """Name of a direction: an axis of the base, or its components."""
-    k = int(np.argmax(np.abs(v)))
-    if abs(abs(v[k]) - 1.0) < 1e-9:
-        return ("−" if v[k] < 0.0 else "") + "xyz"[k]
-    return "along (" + ", ".join(f"{x:.3g}" for x in v) + ")"
-
-
 def _coordinate(v: Array, origin: Array, size: float) -> str:
     """Name of a coordinate of a plane, which counts from the point by which it was given.
 
     A distance of that point from zero by rounding only, beside the size of the picture, is zero.
     """
-    away, name = float(v @ origin), _direction(v)
+    away, name = float(v @ origin), direction_name(v)
     if abs(away) <= PLANE_ROUNDING * size:
         return name
     return f"{name} {'−' if away > 0.0 else '+'} {abs(away):.4g}"
 
 
-def _solid(region: Any, ax: Any) -> Axes:
+def _solid(region: Any, ax: Any) -> str:
+    """Draw a region in space, or of orientations; return the lines of its measure."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     drawn = _proven(region)
@@ -166,10 +196,7 @@ def _solid(region: Any, ax: Any) -> Axes:
         title = f"{CONVENTION}\n{_between(*region.share)} of all orientations"
     else:
         title = _measure("volume", region.volume, unit, "³")
-    if drawn:
-        title += f"\n{_drawn(region)}"
-    ax.set_title(title, fontsize="medium")
-    return ax  # type: ignore[no-any-return]
+    return f"{title}\n{_drawn(region)}" if drawn else title
 
 
 def _proven(region: Any) -> list[Array]:

@@ -16,7 +16,9 @@ from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE
-from gsp.workspace.sets.shapes.clipped import boxes_beyond, corners_beyond
+from gsp.workspace.sets.shapes.clipped import corners_beyond
+from gsp.workspace.sets.shapes.free import outer_faces
+from gsp.workspace.sets.tree.cuts import boxes_beyond
 
 Body = Literal["ball", "cylinder", "box"]
 Size = Callable[[Array], Array]
@@ -55,12 +57,24 @@ class Inscribed(ReadOnly):
         The multiple of the proportions that fits, proven.
     above : float [1]
         No greater multiple fits, proven.
+    reached : bool
+        Whether the searches ended by the tolerance, and not at the greatest number of centres: the
+        rest of `gap` is that of the undecided cells then.
     """
 
     centre: Array
     half_widths: Array
     factor: float
     above: float
+    reached: bool
+
+    @property
+    def gap(self) -> float:
+        """How much more than `factor` is not excluded, as a share of it: above / factor − 1 [1].
+
+        *Source: ours; see docs/sets.md*
+        """
+        return self.above / self.factor - 1.0 if self.factor > 0.0 else float("inf")
 
 
 @dataclass(frozen=True)
@@ -106,7 +120,7 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     some = ~open_ | (cuts[:, 7] < np.inf)
     if not some.any():
         raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
-    near, far = _outer_faces(low, high)
+    near, far = outer_faces(low, high)
     obstacles = _obstacles(
         np.concatenate((low[open_], near)),
         np.concatenate((high[open_], far)),
@@ -115,7 +129,7 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     flat = [(0, 0), (0, 3 - d)]
     outside = corners_beyond(np.pad(low[open_], flat), np.pad(high[open_], flat), -cuts[open_, :4])
     points = np.concatenate((outside[:, :d], 0.5 * (near + far)))
-    centre, factor, _ = _deepest(
+    centre, factor, bound = _deepest(
         low[some],
         high[some],
         gauge,
@@ -126,7 +140,7 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     # A body beyond `above` has one of these points inside, wherever its centre is.
     out = _obstacles(points, points, np.tile(NO_PLANE, (len(points), 1)))
     # Nor is its centre in a part that is outside: most of a large cell often is.
-    _, _, above = _deepest(
+    _, deepest, above = _deepest(
         *boxes_beyond(low, high, cuts[:, :4]),
         gauge,
         lambda p: _sizes(p, out, gauge)[1],
@@ -138,6 +152,7 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
         half_widths=factor * (1.0 - SIZE_ROUNDING) * shape,
         factor=factor * (1.0 - SIZE_ROUNDING),
         above=max(above, factor) * (1.0 + SIZE_ROUNDING),
+        reached=bound <= factor * (1.0 + share) and above <= deepest * (1.0 + share),
     )
 
 
@@ -155,41 +170,6 @@ def _proportions(region: Any, body: Any, given: ArrayLike | None) -> Array:
     if (radii != radii[0]).any():
         raise InvalidInput(expected("proportions", f"equal radii of a {body}", brief(given)))
     return shape
-
-
-def _outer_faces(low: Array, high: Array) -> tuple[Array, Array]:
-    """Return the faces between boxes (n, d) and what is in none, as boxes of no width."""
-    lows, highs = [np.zeros((0, low.shape[1]))], [np.zeros((0, low.shape[1]))]
-    for k, side, a, b in _free_faces(low, high):
-        near, far = a.copy(), b.copy()
-        near[:, k] = far[:, k] = (b if side else a)[:, k]
-        lows.append(near)
-        highs.append(far)
-    return np.concatenate(lows), np.concatenate(highs)
-
-
-def _free_faces(low: Array, high: Array) -> list[tuple[int, int, Array, Array]]:
-    """Return the faces of boxes (n, d) that no other box shares.
-
-    Per direction and side (0 low, 1 high) the boxes that the faces belong to. Boxes come from one
-    domain by halving; they are divided to the size of the smallest one first.
-    """
-    if not len(low):
-        return []
-    step = (high - low).min(axis=0)
-    start = low.min(axis=0)
-    first = np.rint((low - start) / step).astype(np.int64) + 1
-    last = np.rint((high - start) / step).astype(np.int64) + 1
-    grid = np.zeros(last.max(axis=0) + 1, dtype=np.bool_)
-    for a, b in zip(first, last, strict=True):
-        grid[tuple(map(slice, a, b))] = True
-    faces = []
-    for k in range(grid.ndim):
-        for side in (0, 1):
-            corner = np.argwhere(grid & ~np.roll(grid, -1 if side else 1, axis=k)) - 1
-            # Equal corners of two boxes get equal bits.
-            faces.append((k, side, start + corner * step, start + (corner + 1) * step))
-    return faces
 
 
 def _obstacles(low: Array, high: Array, cuts: Array) -> Obstacles:

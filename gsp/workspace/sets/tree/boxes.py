@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from gsp.geometry.pose.intervals import middle_measure
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
+from gsp.workspace.sets.tree.cuts import sides
 
 # Share of the size of a region within which a point counts as on the face of a box.
 FACE_TOLERANCE = 1e-9
@@ -23,7 +24,14 @@ def turn_measure(low: Array, high: Array) -> Array:
     return np.asarray(side[:, 0] * middle_measure(low[:, 1], high[:, 1]) * side[:, 2])
 
 
-def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array) -> Codes:
+def located(
+    points: Array,
+    low: Array,
+    high: Array,
+    codes: Codes,
+    domain: Array,
+    cuts: Array | None = None,
+) -> Codes:
     """Return the codes of the boxes in which points are.
 
     Parameters
@@ -33,6 +41,8 @@ def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array)
         Boxes that come from `domain` by halving.
     codes : (n,) int8 array
     domain : (2, d) array [as points]
+    cuts : (n, 8) array or None [1, as points]
+        Parts of undecided boxes that are inside or outside.
 
     Returns
     -------
@@ -65,9 +75,13 @@ def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array)
             found = (moved >= least[cell]) & (moved <= most[cell])
             found = found.all(axis=1) & (keys[cell] == _keys(at))
             deep = (points > least[cell] + near) & (points < most[cell] - near)
-            sure = found & deep.all(axis=1) & (known[cell] == INSIDE)
+            deep = found & deep.all(axis=1)
             result[found & (result == OUTSIDE)] = UNDECIDED
-            result[sure] = INSIDE
+            result[deep & (known[cell] == INSIDE)] = INSIDE
+            if cuts is not None:
+                open_ = np.flatnonzero(deep & (known[cell] == UNDECIDED))
+                own = cell[open_]
+                result[open_] = sides(points[open_], least[own], most[own], cuts[chosen][own])
     return result
 
 

@@ -60,6 +60,42 @@ def _corner_sum(side: Array, c: Array) -> Array:
     return np.asarray(total / (factorial(d) * side.prod(axis=1)))
 
 
+def boxes_beyond(low: Array, high: Array, plane: Array) -> tuple[Array, Array]:
+    """Return the least boxes that contain the parts n · δ ≥ c of boxes (n, d), d = 2 or 3.
+
+    They are wider by the rounding of the sums. Where there is no part they have no width along
+    some axis.
+    """
+    n, c = plane[:, : low.shape[1]], plane[:, 3:]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    spans = np.abs(n) * half
+    total = spans.sum(axis=1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # What the other coordinates leave for n_k δ_k.
+        least = (c - (total - spans) - 1e-12 * (np.abs(c) + total)) / np.abs(n)
+    # It is not finite without a plane, and along it.
+    least = np.where(np.isfinite(least), least, -half)
+    first = np.where(n > 0.0, np.clip(middle + least, low, high), low)
+    return first, np.where(n < 0.0, np.clip(middle - least, low, high), high)
+
+
+def undecided_boxes(low: Array, high: Array, cuts: Array) -> tuple[Array, Array]:
+    """Return the least boxes that contain what neither cut of cells (n, d) decides.
+
+    They are least for one cut; for two they are so along each axis as far as one cut after the
+    other shows it. Where nothing is left they have no width along some axis.
+    """
+    planes = np.stack((cuts[:, :4], -cuts[:, 4:]))
+    middle = 0.5 * (low + high)
+    first, last = low, high
+    for plane in (*planes, *planes):  # twice, as each cut may leave less for the other one
+        here = plane.copy()
+        shift = 0.5 * (first + last) - middle
+        here[:, 3] -= (plane[:, : low.shape[1]] * shift).sum(axis=1)
+        first, last = boxes_beyond(first, last, here)
+    return first, last
+
+
 def sides(points: Array, low: Array, high: Array, cuts: Array) -> Codes:
     """Return the codes of points in the cuts of their cells: 1 inside, −1 outside, else 0."""
     d = points.shape[1]
