@@ -139,6 +139,10 @@ SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]
 TASK = gsp.Task(poses=BOX, wanted="mean CTN", samples=2)
 DEVIATIONS = gsp.exploration.Deviations(base_points=0.01, joints=0.01)
 SPACE = gsp.Space(lee_family, {"number": (0.5, 1.5)})
+HEXAPODS = gsp.Space(
+    gsp.hexapod, {"height": (1.0, 2.0)},
+    fixed={"base_radius": 2.0, "base_angle": 0.3, "platform_radius": 1.0, "platform_angle": 0.3},
+)  # fmt: skip
 FRONT = pd.DataFrame({"score": [1.0, 0.5], "feasible": [0.5, 1.0]})
 MASSES = gsp.statics.Masses(platform=2.0, lower=0.5, upper=0.2)
 
@@ -181,7 +185,7 @@ def instances() -> dict[str, Any]:
         "Record": gsp.published.select("TozKucuk2016")[0],
         "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
         "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near, "Task": TASK,
-        "Space": SPACE, "Deviations": DEVIATIONS,
+        "Space": HEXAPODS, "Deviations": DEVIATIONS,
         "PoseTolerance": gsp.exploration.pose_tolerance(DESIGN, POSE, DEVIATIONS, samples=4),
         "PathCertificate": gsp.certify_path(DESIGN, NODES["poses"]),
         "Calibration": gsp.calibrate(DESIGN, [JOINTS], POSE.reshape(1)),
@@ -353,6 +357,8 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "wish": {"score": 1.0, "feasible": 1.0},
     },
     "read_task": {"path": "wish.toml"},
+    "read_space": {"path": "space.toml"},
+    "Space.write": {"path": "designs.toml", "overwrite": True},
     "assessing.assess": {"task": TASK, "tolerance": 0.1},
     "placement.place": {"legs": "D1-D2-D3-D4A1-A1"},
     "symmetry.symmetries": {"reflections": True, "exchange": False},
@@ -502,7 +508,7 @@ VARIADIC: dict[str, Any] = {
     "symmetric_sets.set_n": {"strokes": None, "unit": "mm"},
     "families.set_p": {"strokes": None, "unit": "mm"},
     "PlanarDesign.replace": {"legs": ["D1"] * 3, "base_points": 2.0 * TRIANGLE},
-    "Space.design": {"number": 1.0},
+    "Space.design": {"height": 1.0},
     "Design.replace": {"legs": [leg.name for leg in DESIGN.legs], **KINDS},
 }
 
@@ -518,6 +524,7 @@ def write_files() -> None:
     HEXAPOD.write("lift.toml")
     PLANAR.write("plane.toml")
     TASK.write("wish.toml")
+    HEXAPODS.write("space.toml")
     instances()["Certificate"].write("certificate.json")
 
 

@@ -4,7 +4,7 @@ from gsp.exploration.assessing import assess
 from gsp.exploration.exploring import explore
 from gsp.exploration.fronts import distances, knee, losses, pareto
 from gsp.exploration.optimisation import gradient, optimise
-from gsp.exploration.reading import read_task
+from gsp.exploration.reading import read_space, read_task
 from gsp.exploration.sensitivity import sensitivities, sobol_indices
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task, Wanted
@@ -33,6 +33,7 @@ __all__ = [
     "optimise",
     "pareto",
     "pose_tolerance",
+    "read_space",
     "read_task",
     "sensitivities",
     "sobol_indices",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from functools import partial
@@ -18,31 +18,25 @@ from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import Request, check_resume
 from gsp.evaluation.settings import Settings
 from gsp.exploration.demands import demands
+from gsp.exploration.proving import Proofs, proof_rows, proven, recorded
 from gsp.exploration.scores import scored
-from gsp.exploration.task import Task, Wanted
+from gsp.exploration.task import Task
 from gsp.exploration.toml import record_of
-from gsp.geometry.pose import Pose, PoseBox
-from gsp.indices import INDICES
+from gsp.exploration.volumes import check_bounded, volumes
+from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
 from gsp.proof.extremes import BOXES_PER_SEARCH, ENDS_TOLERANCE
-from gsp.proof.worst_values import worst_of_each
 from gsp.ranking.comparison import check_by, check_units
 from gsp.ranking.order import attributes, checked_designs, prepared, rows_of_designs
 from gsp.statics import gravity_wrench
+from gsp.workspace.sets.questions import CELL_BUDGET
 
 if TYPE_CHECKING:
     import pandas as pd
 
-# What a table has of a worst value that was proven, by the end of the name of its column.
-PROVEN, FOUND, CLOSED = "proven", "found", "closed"
-
-
-class Proofs(NamedTuple):
-    """How worst values are proven: `tolerance` and `budget` of `gsp.proof.worst`."""
-
-    tolerance: float
-    budget: int
+# What is evaluated where only volumes are wanted: it needs no parameter and has one unit.
+NO_INDEX = ("condition_number_points",)
 
 
 class Run(NamedTuple):
@@ -83,7 +77,8 @@ def assess(
     tolerance : float [1]
         Relative gap at which the search for a proven worst value ends: see `gsp.bounds`.
     budget : int or None
-        Most boxes of such a search, default 100 000.
+        Most boxes of such a search, default 100 000; most cells of a search for a volume, default
+        6 000 000.
     workers, executor, out, parts, resume, progress : see `gsp.rank`
 
     Returns
@@ -92,7 +87,10 @@ def assess(
         One row per design: rank, score, and the columns of `gsp.rank` for the indices of the task.
         For each proven worst value of an index: "…_proven", a bound that no pose of the box
         violates; "…_found", the worst value that occurs at a pose of the search; "…_closed",
-        whether they differ by no more than the tolerance. A design that has no pose within
+        whether they differ by no more than the tolerance. For each volume "…_volume_low" and
+        "…_volume_high", between which it is proven to be [unit³], and "…_volume_resolution", the
+        longest side of the cells that are undecided [unit]; the least volume decides. Where
+        nothing else is wanted, the table has CDN_3P as well. A design that has no pose within
         the limits has `feasible` = 0 and no score; "violated_joint", "violated_cone" … are the
         shares of all poses that violate a limit of the kind. With loads "actuator_force" [N] and
         "actuator_torque" [N · unit] are the greatest at the poses within the limits, inf if one is
@@ -159,7 +157,7 @@ def assessed_table(
             attributes(request, "score", designs, Settings(task.length, task.ellipsoid)),
             task=record_of(task),
             **facts,
-            **(proofs._asdict() if proven(task) else {}),
+            **recorded(task, proofs),
         )
         if output:
             output.write(frame)
@@ -184,8 +182,9 @@ def checked(
             f"gsp.ranking.in_unit(design, {task.unit!r}) in Python)"
         )
         raise InvalidInput(expected("designs", wanted, repr(unit)))
-    most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)
-    return chosen, Proofs(check_positive("tolerance", tolerance), most)
+    most = None if budget is None else check_integer("budget", budget)
+    found = check_positive("tolerance", tolerance), most or BOXES_PER_SEARCH, most or CELL_BUDGET
+    return chosen, Proofs(*found)
 
 
 def requested(
@@ -201,7 +200,7 @@ def requested(
     request, _, asked = prepared(
         designs,
         task.pose(),
-        list(task.indices),
+        list(task.indices or NO_INDEX),
         None,
         limits=task.limits,
         length=task.length,
@@ -215,15 +214,13 @@ def requested(
     )
     for name in task.indices:
         check_by(name, request.names, designs)
+    if volumes(task):
+        for design in designs:
+            check_bounded(design, task)
     if task.payload is not None:
         for design in designs:
             gravity_wrench(design, Pose(np.zeros(3)), task.payload)
     return request, asked
-
-
-def proven(task: Task) -> list[Wanted]:
-    """Return what is wanted with a proof."""
-    return [wish for wish in task.wanted if wish.of == "proven worst"]
 
 
 def fingerprint(request: Request, task: Task, proofs: Proofs, facts: dict[str, Any]) -> str:
@@ -243,51 +240,12 @@ def assessed(
         request = with_maxima(request, report)
         beside = partial(demands, pose=request.pose, task=task)
         request, rows = rows_of_designs(request, asked, parts, report, beside)
-    wanted = proven(task)
+    wanted = [*proven(task), *volumes(task)]
     if wanted:
         with meter(request.progress, "proofs") as report:
-            for done, (number, row) in enumerate(_proofs(request, task, wanted, proofs, parts), 1):
+            for done, (number, row) in enumerate(
+                proof_rows(request, task, wanted, proofs, parts), 1
+            ):
                 rows[number] |= row
                 report(done, len(wanted) * len(rows))
     return request, rows
-
-
-def _proofs(
-    request: Request,
-    task: Task,
-    wanted: Sequence[Wanted],
-    proofs: Proofs,
-    parts: Parts | None,
-) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield number of design and columns of each proof."""
-    for series, wish in enumerate(wanted, 1):
-        first = series * len(request.jobs)
-        designs = {i: job.design for i, job in enumerate(request.jobs)}
-        stored = {i: parts.read_row(first + i) for i in designs if parts and parts.has(first + i)}
-        yield from stored.items()
-        left = {i: design for i, design in designs.items() if i not in stored}
-        for number, row in _proven_rows(request, task, wish, proofs, left):
-            if parts:
-                parts.write_row(first + number, row)
-            yield number, row
-
-
-def _proven_rows(
-    request: Request, task: Task, wish: Wanted, proofs: Proofs, designs: Mapping[int, Design]
-) -> Iterator[tuple[int, dict[str, Any]]]:
-    if not isinstance(task.poses, PoseBox):  # which a task with such a wish has
-        return
-    options = {"length": task.length, "ellipsoid": task.ellipsoid, "maximum": None}
-    lower = INDICES[wish.index].better == "lower"
-    for number, value in worst_of_each(
-        designs, task.poses, wish.index, *proofs, options, request.workers, request.executor
-    ):
-        bound, found = (value.high, value.low) if lower else (value.low, value.high)
-        yield (
-            number,
-            {
-                f"{wish.index}_{PROVEN}": bound,
-                f"{wish.index}_{FOUND}": found,
-                f"{wish.index}_{CLOSED}": bool(value.closed),
-            },
-        )

@@ -10,7 +10,8 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_items, is_a
 from gsp.errors import InvalidInput, brief, expected
-from gsp.exploration.assessing import FOUND, PROVEN
+from gsp.exploration.proving import FOUND, PROVEN
+from gsp.exploration.task import HIGH, LOW, WORKSPACES
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
 from gsp.ranking.tables import STATISTICS
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
 
 DIRECTIONS = ("higher", "lower")
 # Columns of tables that are not of an index, and which side is better.
-OTHER_COLUMNS = {"score": "higher", "feasible": "higher", "within_strokes": "higher"}
+OTHER_COLUMNS = {
+    **dict.fromkeys(("score", "feasible", "within_strokes"), "higher"),
+    **{f"{name}_{end}": "higher" for name in WORKSPACES for end in (LOW, HIGH)},
+}
 
 Objectives = Mapping[str, str] | Sequence[str]
 

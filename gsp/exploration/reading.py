@@ -1,4 +1,4 @@
-"""`read_task`: a task from its file."""
+"""`read_task` and `read_space`: a task and a space of designs from their files."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from os import PathLike
 
 from gsp.checks import plain_text
 from gsp.errors import InvalidInput, MalformedFile, UnknownIndex
+from gsp.exploration.space import Space
+from gsp.exploration.space_reading import space_from_toml
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.toml import TaskReader
 from gsp.files.writing import read_text
@@ -58,3 +60,43 @@ def read_task(path: str | PathLike[str]) -> Task:
         return Task(wanted=wanted, **given)
     except (InvalidInput, UnknownIndex) as error:
         raise MalformedFile(f"{origin}: {error}") from error
+
+
+def read_space(path: str | PathLike[str]) -> Space:
+    """Return the space of designs of a TOML file, which `Space.write` writes.
+
+    Parameters
+    ----------
+    path : path of a file
+
+    Returns
+    -------
+    Space
+
+    Raises
+    ------
+    MalformedFile
+        If the file cannot be read, is not TOML, or has a wrong key or value; the message gives
+        the path, and where there is one the line and the key.
+
+    Examples
+    --------
+    A file such as this one. `make` is a family of designs that commands take, such as "hexapod",
+    with angles in degrees; "gsp.hexapod", with the arguments of the function; or "place", with a
+    choice of `legs` and a design as the fixed `template`:
+
+    ```toml
+    make = "hexapod"
+
+    [ranges]
+    platform_radius = [0.5, 1.5]
+    platform_angle = [5.0, 60.0]
+
+    [fixed]
+    base_radius = 2.0
+    base_angle = 20.0
+    height = 1.5
+    ```
+    """
+    path = plain_text(path)
+    return space_from_toml(read_text(path), str(path))

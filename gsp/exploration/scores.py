@@ -9,7 +9,6 @@ import numpy as np
 
 from gsp.exploration.task import Task
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,9 +36,7 @@ def score(frame: pd.DataFrame, task: Task) -> Array:
     for wish, share in zip(task.wanted, weights / weights.sum(), strict=True):
         values = frame[wish.column].to_numpy(dtype=np.float64, na_value=np.nan)
         with np.errstate(divide="ignore"):
-            good = np.log(np.maximum(values, 0.0)) * (
-                -1.0 if INDICES[wish.index].better == "lower" else 1.0
-            )
+            good = np.log(np.maximum(values, 0.0)) * (-1.0 if wish.better == "lower" else 1.0)
         # All at the worst end: none is better than another.
         best = np.fmax.reduce(good, initial=-np.inf)
         total += share * (good - (best if np.isfinite(best) else 0.0))

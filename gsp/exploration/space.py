@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,8 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_array, check_items, check_type, reading
 from gsp.errors import InvalidInput, brief, expected
+from gsp.exploration.space_toml import toml_from_space
+from gsp.files.writing import write_text
 from gsp.geometry.copies import ReadOnly, ReadOnlyDict
 from gsp.geometry.pose.intervals import sample_points
 from gsp.model.design import Design
@@ -146,6 +149,27 @@ class Space(ReadOnly):
         made = self.make(**{**self.fixed, **parameters})
         check_type("what make returns", made, Design)
         return made
+
+    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the space as TOML; `gsp.exploration.read_space` gives the same designs, bit by bit.
+
+        Parameters
+        ----------
+        path : path of a file
+        overwrite : bool
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        InvalidInput
+            If the function is none that a file can name, such as one of yours, or a fixed value is
+            no text, number, bool or list of these. Of `gsp.catalogue.place` the template has to be
+            a published design.
+        UnwritableOutput
+            If the file exists and `overwrite` is not set, or the folder cannot be written.
+        """
+        allowed = arguments.flag("overwrite", overwrite)
+        write_text(arguments.path("path", path), toml_from_space(self), overwrite=allowed)
 
     def record(self) -> dict[str, Any]:
         """Return the space as texts, numbers and lists, by which tables record it.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from os import PathLike
 from typing import Any, Literal, get_args
 
@@ -25,23 +26,27 @@ from gsp.proof.boxes import check_box
 from gsp.proof.extremes import bounded_name
 from gsp.statics import Masses
 
-Statistic = Literal["mean", "worst", "proven worst"]
+Statistic = Literal["mean", "worst", "proven worst", "volume"]
 STATISTICS: tuple[Statistic, ...] = get_args(Statistic)
 _WANTED = re.compile(rf"^\s*({'|'.join(STATISTICS[::-1])})\s+(.+?)\s*$")
-EXAMPLE = '"mean CTN", "worst CDN_CL" or "proven worst σ_min"'
+EXAMPLE = '"mean CTN", "worst CDN_CL", "proven worst σ_min" or "volume reachable"'
+# Workspaces of which the volume may be wanted, and the ends of the names of its columns.
+WORKSPACES = ("reachable", "dextrous")
+LOW, HIGH, RESOLUTION = "volume_low", "volume_high", "volume_resolution"
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is wanted of an index, and how much it counts.
+    """What is wanted of an index, or of a workspace, and how much it counts.
 
     Parameters
     ----------
     index : str
-        Name or symbol. As an attribute the name.
-    of : "mean", "worst" or "proven worst"
-        The mean over the poses; the worst value at one of the poses; or a proven bound of the worst
-        value over all poses of a box.
+        Name or symbol. As an attribute the name. For a volume "reachable" or "dextrous".
+    of : "mean", "worst", "proven worst" or "volume"
+        The mean over the poses; the worst value at one of the poses; a proven bound of the worst
+        value over all poses of a box; or the volume of the positions at which some orientation of
+        the box ("reachable"), or each of them ("dextrous"), is within the limits.
     weight : float [1]
         > 0: the exponent of the value in the score.
 
@@ -65,15 +70,27 @@ class Wanted:
     def __post_init__(self) -> None:
         of = arguments.one_of(*STATISTICS)("wanted.of", self.of)
         find = bounded_name if of == "proven worst" else index_name
+        if of == "volume":
+            find = partial(arguments.one_of(*WORKSPACES), "wanted.index")
         object.__setattr__(self, "index", find(arguments.text("wanted.index", self.index)))
         object.__setattr__(self, "weight", check_positive("wanted.weight", self.weight))
 
     @property
     def column(self) -> str:
         """The column of a table of designs with its value."""
-        worst = "min" if INDICES[self.index].better == "higher" else "max"
-        ends = {"mean": "mean", "worst": worst, "proven worst": "proven"}
+        worst = "min" if self.better == "higher" else "max"
+        ends = {"mean": "mean", "worst": worst, "proven worst": "proven", "volume": LOW}
         return f"{self.index}_{ends[self.of]}"
+
+    @property
+    def better(self) -> Literal["higher", "lower"]:
+        """Which side of the values is better, "higher" or "lower"."""
+        return "higher" if self.of == "volume" else INDICES[self.index].better
+
+    @property
+    def label(self) -> str:
+        """What is wanted, with the symbol of the index, such as "worst CTN"."""
+        return f"{self.of} {self.index if self.of == 'volume' else INDICES[self.index].symbol}"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -85,7 +102,8 @@ class Task:
     poses : PoseBox, PosePath or Pose of batch shape (n,)
         A box is sampled, a path at equal steps of time with both ends; a batch is taken as it is.
     wanted : sequence of Wanted or str, mapping from str to weight, or str
-        Such as "mean CTN", "worst CDN_CL" or "proven worst σ_min"; the last needs a box.
+        Such as "mean CTN", "worst CDN_CL", "proven worst σ_min", "volume reachable" or "volume
+        dextrous"; the last three need a box.
     limits : Limits or None
         If given, means and worst values are over the poses that satisfy them, and the share of
         these poses is stated; `gsp.Limits()` stands for the strokes of each design. Proven worst
@@ -102,6 +120,10 @@ class Task:
         Masses that the actuators hold at rest: of the platform with its payload, and of the links.
     wrench : (6,) array_like or None [N, N · unit]
         Another force and moment on the platform, about its origin, in base axes.
+    resolution : float or None [unit]
+        Longest side of the cells of a workspace that may stay undecided, where a volume is wanted.
+        Default: cells are halved until the bracket is within ±6 % (dextrous 3 %), or the budget
+        ends.
     unit : str
         Unit of length of the numbers; "" for that of the designs.
     name : str
@@ -113,8 +135,8 @@ class Task:
     Raises
     ------
     InvalidInput
-        On arguments of a wrong type or value, nothing wanted, the same wanted twice, or a proven
-        worst value without a box.
+        On arguments of a wrong type or value, nothing wanted, the same wanted twice, a proven
+        worst value or a volume without a box, or a resolution without a volume.
     UnknownIndex
         On the name of no index, or of one without proven bounds where these are wanted.
 
@@ -136,6 +158,7 @@ class Task:
     ellipsoid: Ellipsoid | None = None
     payload: Masses | None = None
     wrench: Any = None
+    resolution: float | None = None
     unit: str = ""
     name: str = ""
 
@@ -146,11 +169,19 @@ class Task:
             wish = "a PoseBox, a PosePath, or a Pose of batch shape (n,), not empty"
             raise InvalidInput(expected("task.poses", wish, brief(poses)))
         wanted = _all_wanted(self.wanted)
-        if any(wish.of == "proven worst" for wish in wanted):
-            if not isinstance(poses, PoseBox):
-                wish = "a PoseBox, as a proven worst value is wanted"
+        kinds = {wish.of for wish in wanted}
+        for kind, text in (("proven worst", "proven worst value"), ("volume", "volume")):
+            if kind in kinds and not isinstance(poses, PoseBox):
+                wish = f"a PoseBox, as a {text} is wanted"
                 raise InvalidInput(expected("task.poses", wish, type(poses).__name__))
+        if "proven worst" in kinds and isinstance(poses, PoseBox):
             check_box(poses)
+        if self.resolution is not None:
+            resolution = check_positive("task.resolution", self.resolution)
+            object.__setattr__(self, "resolution", resolution)
+            if "volume" not in kinds:
+                got = f"{resolution} and no volume among what is wanted"
+                raise InvalidInput(expected("task.resolution", "none without a volume", got))
         if self.limits is not None:
             check_type("task.limits", self.limits, Limits)
         if self.ellipsoid is not None:
@@ -177,7 +208,7 @@ class Task:
     @property
     def indices(self) -> tuple[str, ...]:
         """Names of the indices of which something is wanted, each once."""
-        return tuple(dict.fromkeys(wish.index for wish in self.wanted))
+        return tuple(dict.fromkeys(w.index for w in self.wanted if w.of != "volume"))
 
     def pose(self) -> Pose:
         """Return the poses at which designs are evaluated, batch shape (n,).

@@ -17,7 +17,7 @@ from gsp.limits import Limits
 from gsp.model.design.toml import ELLIPSOID_KEYS
 from gsp.statics import Masses
 
-_SETTINGS = ("name", "unit", "samples", "seed", "length", "wrench")
+_SETTINGS = ("name", "unit", "samples", "seed", "length", "wrench", "resolution")
 _MASSES = tuple(f.name for f in fields(Masses))
 _LIMITS = tuple(f.name for f in fields(Limits) if f.init)
 _PATH = ("times", "position", "turn", "rotation")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Mapping
+from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -158,6 +159,7 @@ def design_of_family(text: str) -> Design:
     return function_of_family(match[1])(**given)
 
 
+@cache
 def function_of_family(name: str) -> Callable[..., Design]:
     """Return the function of a family of `FAMILIES`, which takes its parameters by name."""
     family = FAMILIES[name]

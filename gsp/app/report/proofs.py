@@ -207,17 +207,13 @@ def task(study: Study) -> str:
     if wanted is None:
         return "<p>No task was given: <code>--task FILE</code>.</p>"
     row = study.assessed
-    facts = [
-        (f"{wish.of} {INDICES[wish.index].symbol}", row[wish.column]) for wish in wanted.wanted
-    ]
+    facts = [(wish.label, row[wish.column]) for wish in wanted.wanted]
     shown = [(name, number(float(value), 5)) for name, value in facts]
     if wanted.limits is not None:
         shown.append(("poses within the limits", f"{100.0 * float(row['feasible']):.4g} %"))
     ranked = study.ranked
     here = int(np.flatnonzero((ranked["design"] == study.state.design.name).to_numpy())[0])
-    columns = {
-        wish.column: f"{wish.of} {INDICES[wish.index].symbol}" for wish in quick(wanted).wanted
-    }
+    columns = {wish.column: wish.label for wish in quick(wanted).wanted}
     first = sorted({*range(min(5, len(ranked))), here})
     rows = [
         (

@@ -225,10 +225,16 @@ def study_of(design: Design, pose: Pose | None, task: Task | None, length: float
 
 
 def quick(task: Task) -> Task:
-    """Return a task without proofs: proven worst values become worst values at its poses."""
-    wishes = {(w.index, "worst" if w.of == "proven worst" else w.of): w for w in task.wanted}
+    """Return a task without proofs: proven worst values become worst values at its poses.
+
+    Volumes are left out, unless nothing else is wanted.
+    """
+    short = [wish for wish in task.wanted if wish.of != "volume"]
+    if not short:
+        return task
+    wishes = {(w.index, "worst" if w.of == "proven worst" else w.of): w for w in short}
     wanted = [replace(wish, of=of) for (_, of), wish in wishes.items()]
-    return replace(task, wanted=wanted)
+    return replace(task, wanted=wanted, resolution=None)
 
 
 def attempted(part: Any) -> tuple[Any, str]:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from gsp.cli.inputs.sides import Side
 from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
 from gsp.cli.outputs.completeness import check_curves, check_reached, share_in
 from gsp.cli.outputs.console import between, counted, number, say
@@ -21,6 +20,7 @@ from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.rounding import rounded_down, rounded_up
+from gsp.workspace.sides import Side
 
 if TYPE_CHECKING:
     from gsp.limits import Limits

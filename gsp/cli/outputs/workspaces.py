@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from gsp.cli.inputs.sides import Side
 from gsp.cli.inputs.workspaces import check_place, vertical_plane
 from gsp.cli.outputs.completeness import check_stopped
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
@@ -14,6 +13,7 @@ from gsp.cli.outputs.regions import Files
 from gsp.files.tables import write_table
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.workspace.sides import Side
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from gsp.cli import interrupts
+from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Force, Workers
-from gsp.cli.inputs.spaces import read_space
 from gsp.cli.outputs.console import counted, say, show_table, warn
 from gsp.cli.ranking.files import outputs, save, stopped
 from gsp.cli.ranking.tasks import STORED, best_by_score, without_score
 from gsp.errors import InvalidInput
 from gsp.exploration import explore, read_task
+from gsp.exploration.space_reading import space_from_toml
+from gsp.files.writing import read_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,7 +74,8 @@ def explore_command(
 
     - `gsp explore space.toml --task task.toml --samples 5000 --seed 1 --out designs.parquet`
     """
-    designs, wanted = read_space(space), read_task(task)
+    designs = space_from_toml(read_text(space), str(space), find_design)
+    wanted = read_task(task)
     with outputs(out, False, force, resume, RESULT) as files:
         try:
             with interrupts.concluded_by(lambda: stopped(files.parts, STORED)):

@@ -14,8 +14,10 @@ from gsp.cli.ranking.candidates import Candidates
 from gsp.cli.ranking.files import KEYS, outputs, save, stopped
 from gsp.cli.ranking.report import BEST, designs_text, facts_of
 from gsp.exploration import Task, assess
-from gsp.exploration.assessing import CLOSED, FOUND, PROVEN, proven
 from gsp.exploration.demands import FORCE, TORQUE, VIOLATED, is_loaded
+from gsp.exploration.proving import CLOSED, FOUND, PROVEN, proven
+from gsp.exploration.task import HIGH, LOW, RESOLUTION
+from gsp.exploration.volumes import volumes
 from gsp.limits.kinds import Kind
 
 if TYPE_CHECKING:
@@ -84,6 +86,7 @@ def own_columns(task: Task) -> list[str]:
     return [
         "score",
         *(f"{wish.index}_{end}" for wish in proven(task) for end in ends),
+        *(f"{w.index}_{end}" for w in volumes(task) for end in (LOW, HIGH, RESOLUTION)),
         *((FORCE, TORQUE) if is_loaded(task) else ()),
         *(f"{VIOLATED}{kind}" for kind in (kinds if task.limits is not None else ())),
     ]

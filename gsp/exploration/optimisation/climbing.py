@@ -21,7 +21,6 @@ from gsp.exploration.optimisation.goals import NO_MERIT, Goals, merit
 from gsp.exploration.space import Space
 from gsp.exploration.task import Wanted
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
 from gsp.limits import Limits
 from gsp.model.posture import Posture
 from gsp.model.posture.slopes import Slopes
@@ -131,7 +130,7 @@ class Climb:
 
     def _logs(self, wish: Wanted, values: Array, slopes: Array) -> tuple[Array, Array]:
         """Return merits (n,) and their derivatives along the unit cube (n, k)."""
-        sign = 1.0 if INDICES[wish.index].better == "higher" else -1.0
+        sign = 1.0 if wish.better == "higher" else -1.0
         with np.errstate(divide="ignore", invalid="ignore"):
             rates = sign * slopes * self.widths / values[:, None]
         logs = np.array([merit(wish, value) for value in values])

@@ -120,9 +120,9 @@ def why_not_smooth(space: Space, task: Task) -> str:
     if not space.ranges:
         return expected("space", "at least one range", "choices only")
     for wish in task.wanted:
+        if wish.of in ("proven worst", "volume"):
+            return expected("task.wanted", "means and worst values", wish.label)
         index = INDICES[wish.index]
-        if wish.of == "proven worst":
-            return expected("task.wanted", "means and worst values", f"proven worst {index.symbol}")
         if not has_gradient(index):
             return expected("task.wanted", "indices with a gradient", index.symbol)
     return ""

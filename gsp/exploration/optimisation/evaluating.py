@@ -9,8 +9,9 @@ import numpy as np
 
 from gsp.errors import GspError
 from gsp.evaluation.parts import Parts
-from gsp.exploration.assessing import Proofs, Run, assessed, checked, requested
+from gsp.exploration.assessing import Run, assessed, checked, requested
 from gsp.exploration.optimisation.goals import CERTIFIED, Goals
+from gsp.exploration.proving import Proofs
 from gsp.exploration.space import Space
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -98,9 +99,9 @@ class Evaluator:
 
     def _assessed(self, designs: Sequence[Design]) -> list[dict[str, Any]]:
         task = self.goals.watched
-        chosen, proofs = checked(designs, task, *self.proofs)
+        chosen, _ = checked(designs, task, self.proofs.tolerance, self.proofs.budget)
         request, asked = requested(chosen, task, self.run, False)
-        return assessed(request, task, asked, proofs, None)[1]
+        return assessed(request, task, asked, self.proofs, None)[1]
 
     def _certified(self, row: Mapping[str, Any], design: Design) -> bool:
         """Return whether a design is proven; those that violate a bound already are not tried."""

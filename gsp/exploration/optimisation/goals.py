@@ -12,7 +12,6 @@ from gsp import arguments
 from gsp.errors import InvalidInput, expected
 from gsp.exploration.task import Task, Wanted, wanted_value
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
 from gsp.ranking.restrictions import FEASIBLE
 
 # The column that states whether limits and regularity are proven over the box of the task.
@@ -90,7 +89,7 @@ def merit(wish: Wanted, value: float) -> float:
         return NO_MERIT
     with np.errstate(divide="ignore"):
         log = float(np.log(max(value, 0.0)))
-    good = log if INDICES[wish.index].better == "higher" else -log
+    good = log if wish.better == "higher" else -log
     return float(np.clip(good, NO_MERIT, -NO_MERIT))
 
 

@@ -94,10 +94,10 @@ def _of_space(space: Space, task: Task, parameters: Mapping[str, Any]) -> pd.Dat
 
 def _of_design(design: Design, task: Task) -> pd.DataFrame:
     for wish in task.wanted:
-        index = INDICES[wish.index]
-        if wish.of == "proven worst" or not has_gradient(index):
+        proof = wish.of in ("proven worst", "volume")
+        if proof or not has_gradient(INDICES[wish.index]):
             wanted = "means and worst values of indices with a gradient"
-            raise InvalidInput(expected("task.wanted", wanted, f"{wish.of} {index.symbol}"))
+            raise InvalidInput(expected("task.wanted", wanted, wish.label))
     dimensions = Dimensions.of(design, ANCHORS)
     posture, directions = design.at(task.pose()), dimensions.directions(design)
     values = {

@@ -10,11 +10,13 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_memory, optional
 from gsp.errors import InvalidInput, expected
-from gsp.exploration.assessing import Run, assessed, checked, proven, requested
+from gsp.exploration.assessing import Run, assessed, checked, requested
 from gsp.exploration.exploring import DESIGN_BYTES, designs_of
+from gsp.exploration.proving import proven
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task
 from gsp.exploration.toml import record_of
+from gsp.exploration.volumes import volumes
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress
 from gsp.proof.extremes import ENDS_TOLERANCE
@@ -130,6 +132,8 @@ def _check(space: Space, task: Task, n: int, confidence: float) -> None:
         raise InvalidInput(expected("space", "ranges only", f"choices {', '.join(space.choices)}"))
     if proven(task):
         raise InvalidInput(expected("task.wanted", "means and worst values", "a proven worst"))
+    if volumes(task):
+        raise InvalidInput(expected("task.wanted", "means and worst values", "a volume"))
     if n & (n - 1):
         raise InvalidInput(expected("n", "a power of two", n))
     if not 0.0 < confidence < 1.0:

@@ -10,8 +10,9 @@ import numpy as np
 
 from gsp import arguments
 from gsp.errors import InvalidInput, expected
-from gsp.exploration.assessing import Run, assessed, checked, proven, requested
+from gsp.exploration.assessing import Run, assessed, checked, requested
 from gsp.exploration.optimisation.derivatives import has_gradient, statistic, values_and_slopes
+from gsp.exploration.proving import proven
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.tolerance.deviations import (
     Deviations,
@@ -20,6 +21,7 @@ from gsp.exploration.tolerance.deviations import (
 )
 from gsp.exploration.tolerance.shares import shares
 from gsp.exploration.toml import record_of
+from gsp.exploration.volumes import volumes
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
@@ -153,6 +155,8 @@ def _check(task: Task) -> None:
         raise InvalidInput(expected("task.limits", wanted, "limits"))
     if proven(task):
         raise InvalidInput(expected("task.wanted", "means and worst values", "a proven worst"))
+    if volumes(task):
+        raise InvalidInput(expected("task.wanted", "means and worst values", "a volume"))
 
 
 def _rows(designs: list[Design], task: Task, run: Run, progress: Progress) -> list[dict[str, Any]]:

@@ -1,42 +1,51 @@
-"""Files of spaces of designs: a function, and ranges, choices and fixed values of its arguments."""
+"""Reading a space of designs from TOML, with errors that have file, line and key."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
 
-from gsp.catalogue import place
-from gsp.cli.inputs.designs import find_design
+from gsp.catalogue import design as published_design
 from gsp.errors import InvalidInput, MalformedFile, UnknownName, expected
-from gsp.exploration import Space
-from gsp.families.texts import FAMILIES, function_of_family
+from gsp.exploration.space import Space
+from gsp.exploration.space_toml import MAKERS, Find, function_of_name
+from gsp.families.texts import design_of_family, is_family
 from gsp.files.toml_lines import line_of, parse_toml
-from gsp.files.writing import read_text
-from gsp.model.design import Design
+from gsp.model.design import Design, read_design
 
-# The function that puts legs on the positions of a template.
-PLACE = "place"
-MAKERS = (*FAMILIES, PLACE)
 TABLES = ("ranges", "choices", "fixed")
 # Table, or table and key, with which messages on a space begin.
 _PLACE = re.compile(r"space(?:\.(\w+)(?:\['(.+?)'\])?)?: ")
 
 
-def read_space(path: Path) -> Space:
-    """Return the space of a TOML file: `make`, and the tables [ranges], [choices] and [fixed].
+def find_design(text: str) -> Design:
+    """Return the design of a text: a file (.toml), a family with parameters, or a published one.
 
-    `make` is a family of `gsp.families.texts`, whose angles are in degrees, or "place", whose
-    argument `template` is a design as commands take it.
+    Raises
+    ------
+    MalformedFile, InvalidInput, UnknownDesign
+    """
+    if text.lower().endswith(".toml"):
+        return read_design(text)
+    return design_of_family(text) if is_family(text) else published_design(text)
+
+
+def space_from_toml(text: str, origin: str, find: Find = find_design) -> Space:
+    """Return the space of a TOML text: `make`, and the tables [ranges], [choices] and [fixed].
+
+    Parameters
+    ----------
+    text : str
+    origin : str
+        Names the file in errors.
+    find : function (text) -> Design
+        Finds the template of a placement.
 
     Raises
     ------
     MalformedFile
-        If the file cannot be read, is not TOML, or has a wrong key or value: with the file, the
-        line and the key.
+        If it is not TOML, or has a wrong key or value: with the file, the line and the key.
     """
-    text, origin = read_text(path), str(path)
     data, lines = parse_toml(text, origin), text.split("\n")
     for key, value in data.items():
         wanted = "a text" if key == "make" else f"a table [{key}]"
@@ -50,7 +59,8 @@ def read_space(path: Path) -> Space:
     if "make" not in data:
         raise MalformedFile(f"{origin}: expected the key 'make', one of {', '.join(MAKERS)}")
     try:
-        return Space(_function(data["make"]), *(data.get(name, {}) for name in TABLES))
+        make = function_of_name(data["make"], find)
+        return Space(make, *(data.get(name, {}) for name in TABLES))
     except (InvalidInput, UnknownName) as error:
         raise MalformedFile(f"{origin}{_at_key(lines, str(error))}") from error
 
@@ -64,17 +74,3 @@ def _at_key(lines: Sequence[str], text: str) -> str:
     line = line_of(lines, table) if key is None else line_of(lines, key, table)
     path = table if key is None else f"{table}.{key}"
     return f", line {line}, key {path!r}: {text if found is None else text[found.end() :]}"
-
-
-def _function(name: str) -> Callable[..., Design]:
-    if name == PLACE:
-        return _placed
-    if name not in FAMILIES:
-        raise UnknownName("make", name, MAKERS)
-    return function_of_family(name)
-
-
-def _placed(*, legs: str, template: Any) -> Design:
-    if not isinstance(template, str):
-        raise InvalidInput(expected("template", "the name or file of a design", repr(template)))
-    return place(legs, find_design(template))
