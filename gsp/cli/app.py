@@ -88,6 +88,14 @@ _COMMANDS = {
         "design.maximum:maximum",
         "Print the largest |det J| of a design, by which the quality index λ is normalised.",
     ),
+    "tolerance": (
+        "design.tolerance:tolerance",
+        "Compute what manufacturing errors do to the pose, or to what a task wants.",
+    ),
+    "calibrate": (
+        "design.calibrate:calibrate_command",
+        "Find the dimensions and joint zero points of a machine from measurements.",
+    ),
     "report": (
         "design.report:report",
         "Write a report of a design: one HTML page that opens offline and can be printed.",

@@ -1,0 +1,117 @@
+"""`gsp tolerance` and `gsp calibrate`: the numbers of the library, files, and bad input."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gsp as library
+
+NOMINAL = library.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, unit="m", name="nominal")
+TASK = """samples = 4
+length = 0.8
+[[wanted]]
+index = "CTN"
+[box]
+position = [[-0.1, 0.1], [-0.1, 0.1], [1.4, 1.6]]
+angles_deg = [[-5.0, 5.0], [-5.0, 5.0], 0.0]
+"""
+
+
+@pytest.fixture
+def machine(tmp_path):
+    """A real machine, poses, and its readings as a table with positions and angles."""
+    NOMINAL.write(tmp_path / "nominal.toml")
+    (tmp_path / "task.toml").write_text(TASK)
+    rng = np.random.default_rng(3)
+    real = NOMINAL.replace(
+        base_points=NOMINAL.base_points + rng.normal(0.0, 0.01, (6, 3)),
+        platform_points=NOMINAL.platform_points + rng.normal(0.0, 0.01, (6, 3)),
+    )
+    poses = library.PoseBox.around(NOMINAL.home, [0.3] * 6).sample(30, rng=1)
+    zero = np.linspace(-0.02, 0.02, 6)
+    table = pd.DataFrame(real.at(poses).joints - zero, columns=list(NOMINAL.joint_names))
+    table[["x", "y", "z"]] = poses.position
+    table[["angle_1", "angle_2", "angle_3"]] = poses.angles("rpy", degrees=True)
+    table.to_csv(tmp_path / "log.csv", index=False)
+    return real, poses, zero, table
+
+
+def test_a_calibration_recovers_the_machine(gsp, machine):
+    real, _, zero, _ = machine
+    result = gsp("calibrate", "nominal.toml", "log.csv", "--write", "found.toml", "--out", "r.csv")
+    assert (result.status, result.err) == (0, "")
+    assert "30 poses of log.csv: 42 of 42 coordinates" in result.out
+    found = library.read_design("found.toml")
+    np.testing.assert_allclose(found.base_points, real.base_points, atol=1e-9)
+    np.testing.assert_allclose(found.platform_points, real.platform_points, atol=1e-9)
+    report, facts = pd.read_csv("r.csv"), json.loads(Path("r.csv.json").read_text())
+    assert len(report) == 42
+    np.testing.assert_allclose(facts["zero_points"], zero, atol=1e-9)
+    np.testing.assert_allclose(report["value"][:3], real.base_points[0], atol=1e-9)
+    assert (
+        "nominal.toml"
+        in gsp("calibrate", "nominal.toml", "log.csv", "--write", "nominal.toml").error
+    )
+
+
+def test_places_alone_leave_the_platform_frame_open(gsp, machine):
+    machine[3].drop(columns=["angle_1", "angle_2", "angle_3"]).to_csv("places.csv", index=False)
+    result = gsp("calibrate", "nominal.toml", "places.csv", "--joint-errors", 1e-6,
+                 "--pose-errors", 1e-6, 1e-6)  # fmt: skip
+    assert result.status == 0
+    assert "Not known  3 motions of the platform frame" in result.out
+
+
+def test_tables_that_cannot_be_used(gsp, machine):
+    table = machine[3]
+    table.drop(columns="d3").to_csv("a.csv", index=False)
+    assert "one column 'd3'" in gsp("calibrate", "nominal.toml", "a.csv").error
+    table.drop(columns="angle_2").to_csv("b.csv", index=False)
+    assert "or x, y, z alone" in gsp("calibrate", "nominal.toml", "b.csv").error
+    table.assign(d1="long").to_csv("c.csv", index=False)
+    assert (
+        "column 'd1': expected a finite number" in gsp("calibrate", "nominal.toml", "c.csv").error
+    )
+    assert "expected a file" in gsp("calibrate", "nominal.toml", "log.txt").error
+    assert gsp("calibrate", "nominal.toml", "log.csv", "--loss", "huber").error.startswith(
+        "gsp: --joint-errors: expected standard errors"
+    )
+
+
+def test_the_tolerance_of_a_pose_is_that_of_the_library(gsp, machine):
+    result = gsp("tolerance", "nominal.toml", "--base", 1e-4, "--joints", 5e-5, "--samples", 64,
+                 "--point", 0, 0, 0.2, "--out", "copies.csv")  # fmt: skip
+    assert (result.status, result.err) == (0, "")
+    errors = library.exploration.Deviations(base_points=1e-4, joints=5e-5)
+    found = library.exploration.pose_tolerance(
+        NOMINAL, NOMINAL.home, errors, point=[0, 0, 0.2], samples=64
+    )
+    copies = pd.read_csv("copies.csv")
+    np.testing.assert_array_equal(copies.iloc[:, -6:].to_numpy(), found.displacements)
+    assert f"{found.quantiles(0.95)[0]:#.4g}" in result.out
+    assert "nominal: 64 copies" in result.out
+
+
+def test_the_tolerance_of_a_task_is_that_of_the_library(gsp, machine):
+    result = gsp(
+        "tolerance", "nominal.toml", "--base", 1e-3, "--task", "task.toml", "--samples", 16
+    )
+    assert (result.status, result.err) == (0, "")
+    errors = library.exploration.Deviations(base_points=1e-3)
+    task = library.read_task("task.toml")
+    found = library.exploration.index_tolerance(NOMINAL, task, errors, samples=16)
+    line = next(x for x in result.out.splitlines() if x.startswith("control_number_mean"))
+    assert line.split()[1] == f"{found.table['nominal'].iloc[0]:#.4g}"
+    assert line.split()[3] == f"{found.table['deviation'].iloc[0]:#.4g}"
+
+
+def test_options_without_an_effect_are_refused(gsp, machine):
+    words = ("tolerance", "nominal.toml", "--base", 1e-3)
+    assert "--workers: not used beside" in gsp(*words, "--workers", 2).error
+    assert "--joints: not used beside" in gsp(*words, "--task", "task.toml", "--joints", 1).error
+    assert "errors of anchor points or lines" in gsp("tolerance", "nominal.toml", "--task",
+                                                     "task.toml").error  # fmt: skip
+    assert gsp("tolerance", "nominal.toml", "--base", -1).status == 2
