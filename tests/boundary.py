@@ -233,6 +233,7 @@ EXAMPLES: dict[str, Any] = {
     "heights": (0.0, 1.0), "depth": 2, "angle": 0.3, "overwrite": False, "links": None,
     "shape": (1,), "strings": "x", "base_radius": 2.0, "base_angle": 0.3, "platform_radius": 1.0,
     "platform_angle": 0.4, "height": 1.5, "arrangement": "zigzag", "frame": DESIGN.to_frame(),
+    "top": "centre", "base": "side",
 }  # fmt: skip
 
 FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.Ellipsoid([1, 2, 3])}
@@ -446,6 +447,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "labelled.boundary_curves": {"region": Later("flat"), "most": 2},
     "questions.fixed_orientation": SETS,
     "questions.orientations": {**SETS, "position": np.array([0.0, 0.0, 10.0]), "resolution": 1.0},
+    "PlanarComponent.contains": {"position": np.zeros((2, 2))},
     "Region.contains": {"points": np.zeros((2, 3))},
     "Region.write": {"path": "region.csv", "overwrite": True},
     "Region.largest": {"body": "ball", "proportions": np.ones(3), "tolerance": 0.3},

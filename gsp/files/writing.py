@@ -96,8 +96,8 @@ def write_file(
     Raises
     ------
     UnwritableOutput
-        If `path` exists and `overwrite` is not set, is a symbolic link that leads to no name, or
-        the folder cannot be written.
+        If `path` exists and `overwrite` is not set, is a pipe or device, or a symbolic link that
+        leads to one or to no name, or the folder cannot be written.
     """
     target = followed(_check_free(path, overwrite=overwrite))
     try:
@@ -274,6 +274,8 @@ def _check_free(
         raise UnwritableOutput(expected(str(target), "a file name", "a link that leads to itself"))
     if exists and not overwrite:
         raise UnwritableOutput(_exists(target))
+    if exists and not followed(target).is_file() and followed(target).exists():
+        raise UnwritableOutput(expected(str(target), "a regular file", "a pipe or device"))
     if not target.parent.is_dir():
         raise UnwritableOutput(f"{target}: the folder {target.parent} does not exist")
     return target

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,19 +11,20 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
+from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.kinematics.newton import reference
-from gsp.kinematics.newton.centred import Centred
+from gsp.kinematics.newton.centred import Centred, centred
 from gsp.kinematics.newton.control import PROVEN_SHARE
 from gsp.model.design import Design
 from gsp.model.design.checks import check_strokes, open_strokes
 from gsp.variation.legs import KINDS, Kind
 
-# Shortest step, of the size of the design and rad. Where the limit is crossed, not only touched,
+# Shortest step, in sizes of the design and rad. Where the limit is crossed, not only touched,
 # the result is below the exact one by at most this.
 SHORTEST_TRAVEL_STEP = 1e-9
-# Default search distance, in the same units.
+# Default search distance, at the speed of the start, in the same units.
 DEFAULT_DISTANCE = 10.0
 # Least and greatest number that the largest component of a direction may be.
 DIRECTION = (1e-100, 1e100)
@@ -82,7 +84,8 @@ def travel(
         Least and greatest joint values, those of distances ≥ 0, NaN for none; default those of
         the design.
     farthest : float or None [1]
-        Greatest factor; default the one that moves by 10 sizes of the design or 10 rad.
+        Greatest factor; default the one that moves the centre of the anchors by 10 sizes of the
+        design, at its speed at the start, or the platform by 10 rad.
 
     Returns
     -------
@@ -104,14 +107,11 @@ def travel(
     ('d3 = 200', True)
     """
     start, twist, bounds = _check(design, pose, direction, strokes)
-    small = Centred.of(design, kept=True)
-    size = float(small.frame[0])
-    rates = twist / np.repeat([size, 1.0], 3)
-    rate = float(max(norm(rates[:3]), norm(rates[3:])))
+    small = centred(design)
+    path = _Path.of(small, start, twist)
+    rate = path.rate
     most = DEFAULT_DISTANCE if farthest is None else check_positive("farthest", farthest) * rate
-    rates = rates / rate
-    march = _March(small, small.pose_from(start.reshape(1)), rates, bounds / small.units[:, None])
-    done, number = march.go(most)
+    done, number = _March(small, path, bounds / small.units[:, None]).go(most)
     end = start.moved(twist * (done / rate))
     return Travel(distance=done / rate, limit=_name(design, number, bounds), pose=end)
 
@@ -142,11 +142,62 @@ def _check(
     return pose, twist, open_strokes(check_strokes(given, design.angular), n)
 
 
-class _March:
-    """Steps along one direction, in sizes of the design, each proven to violate no limit."""
+@dataclass(frozen=True, eq=False)
+class _Path(ReadOnly):
+    """The motion in centred frames: while the platform turns, its centre moves on a curve.
 
-    def __init__(self, design: Centred, start: Pose, rates: Array, bounds: Array) -> None:
-        self.design, self.start, self.rates = design, start, rates
+    Its speed or that of its turn is 1 at the start: the distance counts sizes of the design or rad.
+
+    Attributes
+    ----------
+    start : Pose of batch shape (1,)
+    twist : (6,) array
+        (v, ω) of the frame in which the path is straight, per distance.
+    arm : (3,) array
+        From the origin of that frame to the centre, at the start.
+    rate : float
+        Distance for each unit of the factor of the direction.
+    """
+
+    start: Pose
+    twist: Array
+    arm: Array
+    rate: float
+
+    @classmethod
+    def of(cls, design: Centred, start: Pose, direction: Array) -> Self:
+        """Return the path of a design along a direction [unit of the design, rad]."""
+        size = float(design.frame[0])
+        twist = direction / np.repeat([size, 1.0], 3)
+        arm = start.rotation @ design.frame[4:] / size
+        rate = float(max(norm(twist[:3] + np.cross(twist[3:], arm)), norm(twist[3:])))
+        return cls(design.pose_from(start.reshape(1)), twist / rate, arm, rate)
+
+    def pose(self, distance: float) -> Pose:
+        """Return the pose at a distance."""
+        step = distance * self.twist
+        step[:3] += self._arm(distance) - self.arm
+        return self.start.moved(step)
+
+    def velocity(self, distance: float) -> Array:
+        """Return the velocity (6,) at a distance."""
+        v, w = self.twist[:3], self.twist[3:]
+        return np.concatenate((v + np.cross(w, self._arm(distance)), w))
+
+    def _arm(self, distance: float) -> Array:
+        return np.asarray(exp3(distance * self.twist[3:]) @ self.arm)
+
+    @property
+    def curved(self) -> float:
+        """Greatest second derivative of the position."""
+        return float((self.twist[3:] ** 2).sum() * norm(self.arm))
+
+
+class _March:
+    """Steps along one path, each proven to violate no limit."""
+
+    def __init__(self, design: Centred, path: _Path, bounds: Array) -> None:
+        self.design, self.path = design, path
         kinds: list[tuple[Kind, int, int]] = []
         for leg, kind in enumerate(design.design.legs):
             kinds += [(KINDS[kind.name], leg, k) for k in range(len(kind.constraints))]
@@ -169,14 +220,14 @@ class _March:
             here = self._point(0.0, None)
             if not self._regular(here):
                 return 0.0, -2
-            bad = self._beyond(*self._values(here, 0.0), np.zeros(6))
+            bad = self._beyond(*self._values(here, np.zeros(6)), np.zeros(6))
             if bad >= 0:
                 return 0.0, bad
             grows = False
             while done < most:
                 step = min(step, most - done)
                 there = self._point(done + step, here.signs)
-                bad = self._checked(here, there, step)
+                bad = self._checked(here, there, done, step)
                 if bad == -1:
                     done, here = done + step, there
                     step, grows = (2.0 if grows else 1.0) * step, True
@@ -187,36 +238,37 @@ class _March:
         return done, -1
 
     def _point(self, distance: float, signs: Array | None) -> reference.Points:
-        pose = self.start.moved(distance * self.rates)
-        return reference.points_at(self.design, pose, np.zeros((1, 6)), signs)
+        return reference.points_at(self.design, self.path.pose(distance), np.zeros((1, 6)), signs)
 
     def _regular(self, point: reference.Points) -> bool:
         square = float((point.inverse**2).sum())
         return bool(point.undefined[0] == 0.0 and np.finfo(float).eps * square <= 0.01)
 
-    def _checked(self, here: reference.Points, there: reference.Points, step: float) -> int:
+    def _checked(
+        self, here: reference.Points, there: reference.Points, done: float, step: float
+    ) -> int:
         """Return −1 if a step violates nothing, else the number of a limit."""
         if not self._regular(there):
             return -2
-        move = step * self.rates[None]
-        bad = self._beyond(*self._values(here, step), self._seconds(here, move))
+        move, curved = step * self.path.velocity(done), step**2 * self.path.curved
+        bad = self._beyond(*self._values(here, move), self._seconds(here, move, curved))
         if bad >= 0:
             return bad
-        bends = reference.row_bends(self.design, here.pose, move)
+        bends = reference.row_bends(self.design, here.pose, move[None], curved)
         change = there.rows - here.rows
         ends = (reference.change_bound(point, change, bends)[0] for point in (here, there))
         return -1 if max(ends) < PROVEN_SHARE else -2
 
-    def _values(self, point: reference.Points, step: float) -> tuple[Array, Array]:
+    def _values(self, point: reference.Points, move: Array) -> tuple[Array, Array]:
         """Return signed distances and cosines, and their changes to first order, (6,)."""
-        value, change = point.error[0], step * (point.rows[0] @ self.rates)
+        value, change = point.error[0], point.rows[0] @ move
         value = np.where(self.angular, np.cos(value), value)
         sine = np.sin(point.error[0])
         return value, np.where(self.angular, -sine * change, change)
 
-    def _seconds(self, point: reference.Points, move: Array) -> Array:
+    def _seconds(self, point: reference.Points, move: Array, curved: float) -> Array:
         """Return bounds of the second derivatives over a step, (6,)."""
-        patch = reference.patch_of(point.pose, move)
+        patch = reference.patch_of(point.pose, move[None], curved)
         geometry = self.design.paths.reshape(-1, 18)
         found = []
         for kind, leg, k in self.kinds:

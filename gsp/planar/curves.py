@@ -111,12 +111,14 @@ class Curve(ReadOnly):
         steps = int(np.ceil((stop - start) / SEEN_STEP)) if self.closed else 1
         total = np.zeros(points.shape[:-1])
         within = norm(points - self.point) < self.radius
+        side = self.turn if self.closed else 1.0
         for first, last in pairwise(self.at(np.linspace(start, stop, steps + 1))):
             a, b = first - points, last - points
-            sine = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-            total += np.arctan2(sine, (a * b).sum(axis=-1))
-            # Between the chord and its arc a point sees the arc pass on the other side.
-            total += 2.0 * np.pi * self.turn * (within & (self.turn * sine < 0.0))
+            # Between the chord and its arc, or on the chord, a point sees the arc pass on the other
+            # side.
+            sine = side * (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+            seen = np.arctan2(np.where(sine == 0.0, 0.0, sine), (a * b).sum(axis=-1))
+            total += side * (seen + 2.0 * np.pi * (within & (sine < 0.0)))
         return total
 
 

@@ -158,23 +158,12 @@ def components(legs: Legs) -> tuple[PlanarComponent, ...]:
     """Return the components that legs allow at a fixed angle, the largest first."""
     if not legs.possible:
         return ()
-    loops = [(_area(loop, legs.centre.mean(axis=0)), loop) for loop in _closed(legs)]
-    loops.sort(key=lambda item: -item[0])
-    outer = [(area, loop) for area, loop in loops if area > 0.0]
-    inner: dict[int, list[tuple[float, Loop]]] = defaultdict(list)
-    for area, loop in loops:
-        if area < 0.0:
-            curve, start, stop, *_ = loop[0]
-            # Most of three points, as a hole may touch the outline in one of them.
-            there = curve.at(start + TESTED_SHARES * (stop - start))
-            turns = [np.median(_winding(_plain(loop), there)) for _, loop in outer]
-            around = [i for i, turn in enumerate(turns) if turn > 0.5]
-            if not around:
-                raise GspError(expected("strokes", DISTINCT, "a hole that no outline is around"))
-            # The smallest of them: outer loops are in descending order.
-            inner[around[-1]].append((area, loop))
-    made = [_component(area, loop, inner[i]) for i, (area, loop) in enumerate(outer)]
-    return tuple(sorted(made, key=lambda part: -part.area))
+    for near, slack in NEAR:
+        loops = _loops(_pieces(legs, near * legs.size, slack * legs.size))
+        parts = None if loops is None else _parts(loops, legs, (near * legs.size) ** 2)
+        if parts is not None:
+            return parts
+    raise GspError(expected("strokes", DISTINCT, "curves whose pieces form no closed outlines"))
 
 
 # A piece: its curve, the parameters of its ends, and the numbers of its vertices.
@@ -182,13 +171,28 @@ Link = tuple[Curve, float, float, int | None, int | None]
 Loop = list[Link]
 
 
-def _closed(legs: Legs) -> list[Loop]:
-    """Return the closed loops around the workspace."""
-    for near, slack in NEAR:
-        loops = _loops(_pieces(legs, near * legs.size, slack * legs.size))
-        if loops is not None:
-            return loops
-    raise GspError(expected("strokes", DISTINCT, "curves whose pieces form no closed outlines"))
+def _parts(loops: list[Loop], legs: Legs, least: float) -> tuple[PlanarComponent, ...] | None:
+    """Return the components of loops, without those of at most a least area; None without outline.
+
+    Where curves touch up to rounding, loops around nothing are between them.
+    """
+    middle = legs.centre.mean(axis=0)
+    known = sorted(((_area(loop, middle), loop) for loop in loops), key=lambda item: -item[0])
+    outer = [(area, loop) for area, loop in known if area > least]
+    inner: dict[int, list[tuple[float, Loop]]] = defaultdict(list)
+    for area, loop in known:
+        if area < -least:
+            curve, start, stop, *_ = loop[0]
+            # Most of three points, as a hole may touch the outline in one of them.
+            there = curve.at(start + TESTED_SHARES * (stop - start))
+            turns = [np.median(_winding(_plain(around), there)) for _, around in outer]
+            around = [i for i, turn in enumerate(turns) if turn > 0.5]
+            if not around:
+                return None
+            # The smallest of them: outer loops are in descending order.
+            inner[around[-1]].append((area, loop))
+    made = [_component(area, loop, inner[i]) for i, (area, loop) in enumerate(outer)]
+    return tuple(sorted(made, key=lambda part: -part.area))
 
 
 def _pieces(legs: Legs, near: float, slack: float) -> list[Link]:
@@ -256,9 +260,13 @@ def _loops(links: list[Link]) -> list[Loop] | None:
 
 
 def _left_turn(before: Link, after: Link) -> float:
-    """Return by how much a path turns to the left from one piece to the next [rad]."""
+    """Return by how much a path turns to the left from one piece to the next, plus π/2 [rad].
+
+    A corner of the workspace has an angle between 0 and π, as each limit alone leaves a half-plane
+    there, so what is negative is 0, or π where curves touch, up to rounding.
+    """
     u, v = before[0].direction(before[2]), after[0].direction(after[1])
-    return float(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v))
+    return float((np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v) + 0.5 * np.pi) % (2.0 * np.pi))
 
 
 def _plain(loop: Loop) -> tuple[tuple[Curve, float, float], ...]:

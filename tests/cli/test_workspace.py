@@ -594,7 +594,7 @@ def test_no_table_of_an_empty_plane_is_written(gsp, tmp_path):
 def test_a_surface_without_an_inside_cell_is_an_error_with_advice(gsp):
     given = ("--angles", "0 0 -5:5", "--resolution", 8, "--out", "x.stl")
     error = gsp("workspace", NAME, *given).error
-    assert "x.stl: expected a whole cell that is proven inside, as with a finer" in error
+    assert "x.stl: expected a region with a part that is proven inside, as with a finer" in error
 
 
 def test_a_design_without_a_home_pose_is_told_which_option_it_needs(tmp_path):

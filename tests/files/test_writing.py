@@ -61,6 +61,18 @@ def test_a_link_that_leads_to_itself_is_refused_before_the_work_and_stays(
     assert os.readlink(link) == leads_to
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_a_pipe_is_not_replaced(tmp_path):
+    pipe, link = tmp_path / "pipe.txt", tmp_path / "link.txt"
+    os.mkfifo(pipe)
+    link.symlink_to(pipe)
+    for path in (pipe, link):
+        with pytest.raises(UnwritableOutput, match="expected a regular file, received a pipe"):
+            write_text(path, "x", overwrite=True)
+    assert pipe.is_fifo()
+    assert link.is_symlink()
+
+
 def test_a_link_to_no_file_is_one_that_exists(tmp_path):
     """Else the work would be done before the name is refused."""
     link = tmp_path / "link.txt"

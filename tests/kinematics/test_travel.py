@@ -106,6 +106,23 @@ def test_another_origin_changes_no_joint():
     np.testing.assert_allclose(again.platform_points, TEMPLATE.platform_points, atol=1e-12)
 
 
+@pytest.mark.parametrize("away", [0.0, 1e3, 1e6])
+@pytest.mark.parametrize("turning", [False, True])
+def test_the_platform_origin_may_be_far_from_the_anchors(away, turning):
+    """A translation ends at the same place; with a turn, where a scan finds the first violation."""
+    far = np.array([away, -2.0 * away, 0.5 * away])
+    design = TEMPLATE.with_origin(far)
+    twist = np.array([3.0, -2.0, 9.0, 0.02, 0.01, -0.03]) * np.repeat([1.0, turning], 3)
+    strokes = np.array([[100.0, 200.0]] * 6)
+    found = gsp.travel(design, design.home, twist, strokes=strokes)
+    if not turning:
+        near = gsp.travel(TEMPLATE, TEMPLATE.home, twist, strokes=strokes)
+        assert found.limit == near.limit
+        assert found.distance == pytest.approx(near.distance, rel=1e-9)
+    rough = scanned(design, design.home, twist, strokes, 1.2 * found.distance)
+    assert 0 <= rough - found.distance <= 1.2 * found.distance / 4000 * (1 + 1e-6)
+
+
 @pytest.mark.parametrize("factor", [1e-100, 1e-30, 1e30, 1e98])
 def test_the_length_of_the_direction_only_scales_the_distance(factor):
     twist, strokes = np.array([3.0, -2.0, 9.0, 0.02, 0.01, -0.03]), [[100, 200]] * 6

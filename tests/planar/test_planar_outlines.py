@@ -175,6 +175,72 @@ def lens(apart, one, other):
     return one**2 * (a - np.sin(2 * a) / 2) + other**2 * (b - np.sin(2 * b) / 2)
 
 
+SMALL = 1.0 / (1.0 + 2.0 / np.sqrt(3.0))  # the radius of three circles that touch in a circle
+THREE = (1.0 - SMALL) * np.exp(1j * (0.5 + 2.0 * np.arange(3) / 3.0) * np.pi)
+# Legs (kind, base anchor, direction, strokes), and the area.
+TOUCHING = {
+    "two holes": (
+        [("D1", 0, 0, 0, 1), ("D1", 0.5, 0, 0.5, 9), ("D1", -0.5, 0, 0.5, 9)],
+        0.5 * np.pi,
+    ),
+    "strip": (
+        [("D3", 0, 1, 0, 1), ("D1", 0, 0, 0, 3), ("D1", 0, 0, 1, 9)],
+        2.0 * (np.sqrt(8.0) + 9.0 * np.arcsin(1.0 / 3.0)) - np.pi,
+    ),
+    "square": ([("D3", 0, 1, 0, 1), ("D3", 0, 1j, 0, 1), ("D1", 0, 0, 1, 9)], 4.0 - np.pi),
+    "ring and strip": (
+        [("D3", 0, 1, 0, 1), ("D1", 0, 0, 1, 2), ("D1", 0, 0, 0, 9)],
+        2.0 * (np.sqrt(3.0) + 4.0 * np.arcsin(0.5)) - np.pi,
+    ),
+    "lens": (
+        [("D1", 1, 0, 0, 2), ("D1", -1, 0, 0, 2), ("D1", 0, 0, 1, 9)],
+        8.0 * np.arccos(0.5) - np.sqrt(12.0) - np.pi,
+    ),
+    "three holes": (
+        [("D1", 0, 0, 0, 1), *(("D1", c, 0, SMALL, 9) for c in THREE)],
+        np.pi * (1.0 - 3.0 * SMALL**2),
+    ),
+}
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e3])
+@pytest.mark.parametrize("name", TOUCHING)
+def test_holes_that_touch_the_outline_or_each_other(name, shift):
+    legs, area = TOUCHING[name]
+    rng = np.random.default_rng(2)
+    for turn in (0.0, 0.5 * np.pi, *rng.uniform(0.0, 7.0, 6)):
+        for unit in (1e-6, 1.0, np.pi):
+            order = rng.permutation(len(legs))
+            kinds, anchors, lines, low, high = zip(*(legs[i] for i in order), strict=True)
+            base, along = (np.exp(1j * turn) * np.array(z) for z in (anchors, lines))
+            base = unit * (base + shift)
+            design = PlanarDesign(
+                kinds,
+                np.stack((base.real, base.imag), axis=1),
+                np.zeros((len(legs), 2)),
+                np.stack((along.real, along.imag), axis=1),
+                strokes=unit * np.stack((low, high), axis=1),
+            )
+            found = sum(part.area for part in planar_components(design)) / unit**2
+            assert found == pytest.approx(area, rel=1e-6)
+
+
+def test_positions_on_chords_of_the_boundary():
+    """Its arcs are seen from there under half a turn."""
+    ring = PlanarDesign(
+        ["D1"] * 3, [[0, 0], [1, 1], [2, -1]], [[0, 0], [1, 1], [2, -1]], strokes=[[4, 9]] * 3
+    )
+    [part] = planar_components(ring)
+    assert not part.contains([[-1, -3], [-2, -2], [2, 2], [0, 0]]).any()
+    lens = PlanarDesign(
+        ["D1"] * 3, [[-5, 0], [5, 0], [0, 3]], np.zeros((3, 2)),
+        strokes=[[2, 5.1], [1, 5.1], [1, 6]],
+    )  # fmt: skip
+    [part] = planar_components(lens)
+    assert part.contains([[0, 0], [0, 0.5], [1e-6, 0]]).all()
+    assert not part.contains([[0, 2], [0.2, 0]]).any()
+
+
 def test_pieces_that_form_no_outline_are_an_error(monkeypatch):
     ring = PlanarDesign(["D1"] * 3, np.eye(3, 2), np.zeros((3, 2)), strokes=[[0.0, 1.0]] * 3)
     pieces = outlines._pieces

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
@@ -321,3 +322,11 @@ def test_ranges_need_a_mechanism_and_a_mean(table):
         ranges(table.assign(control_number_mean=np.nan), "CTN")
     with pytest.raises(InvalidInput):
         ranges(None)
+
+
+def test_a_link_may_lead_to_a_file_of_another_name(tmp_path):
+    (tmp_path / "plain").touch()
+    (tmp_path / "picture.png").symlink_to(tmp_path / "plain")
+    figure, _ = plt.subplots()
+    gsp.plots.save(figure, tmp_path / "picture.png", overwrite=True)
+    assert (tmp_path / "plain").read_bytes().startswith(b"\x89PNG")

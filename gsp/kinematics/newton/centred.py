@@ -45,11 +45,10 @@ class Centred:
     units: Array
 
     @classmethod
-    def of(cls, design: Design, *, kept: bool = False) -> Self:
-        """Return the centred form of a design; `kept`: the platform keeps its origin."""
+    def of(cls, design: Design) -> Self:
+        """Return the centred form of a design."""
         size = design.rms_radius
         centres = [points.mean(axis=0) for points in (design.base_points, design.platform_points)]
-        centres[1] = centres[1] * (0.0 if kept else 1.0)
         a = (design.base_points - centres[0]) / size
         b = (design.platform_points - centres[1]) / size
         lines = np.nan_to_num(np.hstack((design.base_directions, design.platform_directions)))

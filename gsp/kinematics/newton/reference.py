@@ -183,9 +183,9 @@ def _signs(posture: Posture) -> Array:
     return signs
 
 
-def row_bends(design: Centred, pose: Pose, move: Array) -> Array:
-    """Return `bend` of the rows on straight steps from poses, (m, n)."""
-    patch, zero = patch_of(pose, move), np.zeros(pose.size)
+def row_bends(design: Centred, pose: Pose, move: Array, curved: float = 0.0) -> Array:
+    """Return `bend` of the rows on steps from poses, (m, n); see `patch_of`."""
+    patch, zero = patch_of(pose, move, curved), np.zeros(pose.size)
     bends: list[Array] = []
     for leg, geometry in zip(design.design.legs, design.paths.reshape(-1, 18), strict=True):
         kind = KINDS[leg.name]
@@ -194,8 +194,11 @@ def row_bends(design: Centred, pose: Pose, move: Array) -> Array:
     return np.asarray(np.stack(bends, axis=-1), dtype=np.float64)
 
 
-def patch_of(pose: Pose, move: Array) -> Patch:
-    """Return straight steps (m, 6) from poses (m,) as patches of one direction."""
+def patch_of(pose: Pose, move: Array, curved: float = 0.0) -> Patch:
+    """Return steps (m, 6) from poses (m,) as patches of one direction.
+
+    They are straight, or their second derivative of the position is at most `curved`.
+    """
     p, r = components(pose.position), components(pose.rotation.reshape(-1, 9))
     zero = np.zeros(pose.size)
     return Patch.of(
@@ -203,8 +206,8 @@ def patch_of(pose: Pose, move: Array) -> Patch:
             *p,
             *r,
             *[zero] * 12,
-            norm(move[:, :3]),
-            zero,
+            norm(move[:, :3]) + curved,
+            zero + curved,
             norm(move[:, 3:]),
             zero,
             norm(pose.position),

@@ -236,7 +236,8 @@ def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = 
     if not is_a(drawn, Figure):
         wanted = "a matplotlib Figure or Axes"
         raise InvalidInput(expected("figure", wanted, brief(figure)))
-    write_file(path, lambda temporary: save_figure(drawn, temporary), overwrite=overwrite)
+    suffix = Path(path).suffix
+    write_file(path, lambda temporary: save_figure(drawn, temporary, suffix), overwrite=overwrite)
 
 
 def check_picture(path: str | PathLike[str], *, overwrite: bool = False) -> None:
@@ -253,9 +254,13 @@ def check_picture(path: str | PathLike[str], *, overwrite: bool = False) -> None
     check_writable(path, overwrite=overwrite)
 
 
-def save_figure(figure: Figure, path: Path) -> None:
-    """Write a figure to a file in the format of its suffix, without the date."""
+def save_figure(figure: Figure, path: Path, suffix: str | None = None) -> None:
+    """Write a figure to a file in the format of a suffix, by default its own, without the date.
+
+    The file to which a link leads may have another name than the link.
+    """
+    suffix = (path.suffix if suffix is None else suffix).lower()
     with style():
         figure.savefig(
-            path, dpi=150, bbox_inches="tight", metadata={STAMPS[path.suffix.lower()]: None}
+            path, dpi=150, bbox_inches="tight", metadata={STAMPS[suffix]: None}, format=suffix[1:]
         )

@@ -50,6 +50,8 @@ def write_legend(
     from matplotlib.transforms import ScaledTranslation
 
     everything = {**before, **curves, **after}
+    if not everything:  # All curves have their names beside them.
+        return
     grids = _grids(ax, len(everything), _entry(ax, everything))
     best = max(grids, key=lambda grid: (min(grid.room, len(everything)), grid.scale))
     if best.room < len(everything):

@@ -2,6 +2,8 @@
 import { gif } from "gsp-scene/gif.js";
 
 const PAPER = "#f4f7f9", FRAMES_PER_SECOND = 20, LONGEST_SIDE = 720;
+// What is not encoded yet when a recorder stops is lost, so the last picture stays for so long [ms].
+const HELD = 1000;
 
 export function save(blob, name) {
   const link = document.createElement("a");
@@ -54,7 +56,8 @@ export async function film(scene, kind, places, seconds, name) {
 // At most so many frames per second; more samples than that are left out.
 function chosen(places, delay) {
   const step = Math.max(1, Math.round(1000 / FRAMES_PER_SECOND / delay));
-  return [places.filter((_, i) => i % step === 0), delay * step];
+  const last = places.length - 1;
+  return [places.filter((_, i) => i % step === 0 || i === last), delay * step];
 }
 
 async function animation(scene, canvas, places, scale, delay) {
@@ -77,13 +80,36 @@ async function video(scene, canvas, places, scale, delay) {
   recorder.ondataavailable = (event) => parts.push(event.data);
   const ended = new Promise((done) => (recorder.onstop = done));
   recorder.start();
-  for (const place of shown) {
+  const start = performance.now();
+  const show = async (place) => {
     scene.move(place);
     snapshot(scene, scale, canvas);
     await new Promise((done) => setTimeout(done, pause));
-  }
+  };
+  for (const place of shown) await show(place);
+  const motion = performance.now() - start;
+  while (performance.now() < start + motion + HELD) await show(shown.at(-1));
   recorder.stop();
   await ended;
   stream.getTracks().forEach((track) => track.stop());
-  return new Blob(parts, { type: recorder.mimeType });
+  const blob = new Blob(parts, { type: recorder.mimeType });
+  const length = await duration(blob);
+  if (length < (motion - pause) / 1000) {
+    const [has, all] = [length, motion / 1000].map((x) => x.toFixed(1));
+    throw new Error(`the browser was too slow: it recorded ${has} s of ${all} s; a GIF has all pictures`);
+  }
+  return blob;
+}
+
+// The duration of a video [s], which is known at its end only; infinite where it stays unknown.
+function duration(blob) {
+  const player = document.createElement("video");
+  player.muted = true;
+  player.src = URL.createObjectURL(blob);
+  return new Promise((done) => {
+    const end = () => done(Number.isFinite(player.duration) ? player.duration : Infinity);
+    player.onloadedmetadata = () => (player.currentTime = 1e6);
+    player.onseeked = player.onerror = end;
+    setTimeout(end, 5000);
+  }).finally(() => URL.revokeObjectURL(player.src));
 }

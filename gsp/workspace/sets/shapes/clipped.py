@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.surfaces.pieces import CORNERS
+from gsp.workspace.sets.tree.boxes import CORNERS
 
 # The six faces of a box, by its corners.
 FACES = np.array(

@@ -11,12 +11,11 @@ from scipy.sparse.csgraph import connected_components
 
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.workspace.sets.codes import INSIDE, Numbers
+from gsp.workspace.sets.tree.boxes import CORNERS
 
 # Planes of cells that agree to this, as a share of the size of the region, are one: halves of a
 # cell keep its plane.
 SAME_PLANE = 1e-9
-# Corners of a box, as low (0) or high (1) ends.
-CORNERS = np.array([[i >> k & 1 for k in range(3)] for i in range(8)])
 
 
 class Pieces(NamedTuple):

@@ -12,6 +12,8 @@ from gsp.workspace.sets.tree.cuts import sides
 
 # Share of the size of a region within which a point counts as on the face of a box.
 FACE_TOLERANCE = 1e-9
+# Corners of a box in space, as low (0) or high (1) ends.
+CORNERS = np.array([[i >> k & 1 for k in range(3)] for i in range(8)])
 # The angles of boxes of rotations in their order, and the rotation that they stand for ("rpy").
 TURNS, CONVENTION = ("roll", "pitch", "yaw"), "R = Rz(yaw) Ry(pitch) Rx(roll)"
 # Measure of all rotations [rad³], as in `turn_measure`.
