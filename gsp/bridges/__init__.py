@@ -1,4 +1,4 @@
-"""Export to other software, and comparison with it: Pinocchio, MuJoCo, URDF, SDF."""
+"""Models of other software, written and read, and comparison: Pinocchio, MuJoCo, URDF, SDF."""
 
 from gsp.bridges.agreements import Agreement, agreement
 from gsp.bridges.drives import Drives
@@ -6,6 +6,7 @@ from gsp.bridges.exports import export
 from gsp.bridges.mujoco import Simulation, mujoco_rates, render, simulate, to_mjcf
 from gsp.bridges.pinocchio import PinocchioModel, pinocchio_rates, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates
+from gsp.bridges.reading import read_model
 from gsp.bridges.sdf import Sdf, to_sdf
 from gsp.bridges.solids import Solids, masses
 from gsp.bridges.urdf import Urdf, to_urdf
@@ -25,6 +26,7 @@ __all__ = [
     "masses",
     "mujoco_rates",
     "pinocchio_rates",
+    "read_model",
     "render",
     "simulate",
     "to_mjcf",

@@ -78,6 +78,8 @@ class JointLimit(NamedTuple):
     speed: float
 
 
+# What URDF has for a limit of a joint where there is none, as it demands numbers [m, rad].
+NO_STROKE = 1e9
 UNLIMITED = JointLimit(-np.inf, np.inf, np.inf, np.inf)
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.bridges.linkage import Chain
 from gsp.bridges.shapes import Body
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -38,6 +40,12 @@ def joint_values(design: Design, pose: Pose, metres: float) -> dict[str, float]:
     """Return the values of the actuated joints at a pose [m, rad], by their names."""
     values = design.at(pose).joints * np.where(design.angular, 1.0, metres)
     return dict(zip(design.joint_names, values.tolist(), strict=True))
+
+
+def base_slides(chains: Iterable[Chain], metres: float) -> dict[str, float]:
+    """Return the values of the slides along lines of the base [m], by their names."""
+    motions = [motion for chain in chains for motion in chain.base if motion.kind == "slide"]
+    return {motion.name: float(motion.value) * metres for motion in motions}
 
 
 def moments(body: Body, metres: float) -> dict[str, str]:

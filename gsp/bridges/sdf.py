@@ -13,6 +13,7 @@ from gsp.bridges.drives import UNLIMITED, Drives, JointLimit, joint_limits, limi
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.markup import (
     Node,
+    base_slides,
     joined,
     joint_values,
     metric,
@@ -42,16 +43,24 @@ class Sdf(NamedTuple):
         actuator is the sum of this number and the value of its joint in the model.
     platform : Pose of shape ()
         Of the platform where the joints are zero [m].
+    slides : mapping of joint name to value [m]
+        The same as `joints` of passive slides along lines of the base: how far the legs are from
+        the anchors.
     """
 
     text: str
     joints: Mapping[str, float]
     platform: Pose
+    slides: Mapping[str, float]
 
     def beside(self) -> str:
         """Return joint variables and pose as JSON; rotations are (x, y, z, w)."""
         place = numbers_of(self.platform)
-        content = {"joints_at_zero": dict(self.joints), "platform_at_zero": place}
+        content = {
+            "joints_at_zero": dict(self.joints),
+            "slides_at_zero": dict(self.slides),
+            "platform_at_zero": place,
+        }
         return json.dumps(content, indent=2) + "\n"
 
 
@@ -110,7 +119,8 @@ def to_sdf(
     _add_link(model, "platform", pose, fixed_to_platform(chains, bodies), metres)
     for chain in chains:
         _add_leg(model, chain, bodies, limits, metres)
-    return Sdf(written(root), joint_values(design, pose, metres), metric(pose, metres))
+    values, slides = joint_values(design, pose, metres), base_slides(chains, metres)
+    return Sdf(written(root), values, metric(pose, metres), slides)
 
 
 def _add_leg(

@@ -10,10 +10,18 @@ from xml.etree import ElementTree
 import numpy as np
 
 from gsp import arguments
-from gsp.bridges.drives import UNLIMITED, Drives, JointLimit, joint_limits, limit_at_zero
+from gsp.bridges.drives import (
+    NO_STROKE,
+    UNLIMITED,
+    Drives,
+    JointLimit,
+    joint_limits,
+    limit_at_zero,
+)
 from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
 from gsp.bridges.markup import (
     Node,
+    base_slides,
     joined,
     joint_values,
     metric,
@@ -31,7 +39,7 @@ from gsp.model.design import Design
 
 # What is written where there is no limit, as URDF demands numbers: m or rad; N or N m; m/s or
 # rad/s.
-NO_LIMIT = JointLimit(-1e9, 1e9, 1e6, 1e3)
+NO_LIMIT = JointLimit(-NO_STROKE, NO_STROKE, 1e6, 1e3)
 
 
 class Loop(NamedTuple):
@@ -66,12 +74,16 @@ class Urdf(NamedTuple):
         actuator is the sum of this number and the value of its joint in the tree.
     platform : Pose of shape ()
         Of the platform in the base where the joints of the tree are zero [m].
+    slides : mapping of joint name to value [m]
+        The same as `joints` of passive slides along lines of the base: how far the legs are from
+        the anchors.
     """
 
     text: str
     loops: tuple[Loop, ...]
     joints: Mapping[str, float]
     platform: Pose
+    slides: Mapping[str, float]
 
     def beside(self) -> str:
         """Return loops, joint variables and pose as JSON; rotations are (x, y, z, w)."""
@@ -87,6 +99,7 @@ class Urdf(NamedTuple):
         content = {
             "loops": loops,
             "joints_at_zero": dict(self.joints),
+            "slides_at_zero": dict(self.slides),
             "platform_at_zero": numbers_of(self.platform),
         }
         return json.dumps(content, indent=2) + "\n"
@@ -161,7 +174,8 @@ def to_urdf(
         _add_joint(root, "leg1_to_platform", "fixed", ends.pop(chains[0]), "platform", place)
     loops = [Loop(c.name, end, "platform", metric(c.head, metres)) for c, end in ends.items()]
     values = joint_values(design, pose, metres)
-    return Urdf(written(root), tuple(loops), values, metric(pose, metres))
+    slides = base_slides(chains, metres)
+    return Urdf(written(root), tuple(loops), values, metric(pose, metres), slides)
 
 
 def _add_leg(

@@ -69,7 +69,7 @@ _COMMANDS = {
     ),
     "export": ("design.export:export", "Write a design as a multibody model, assembled at a pose."),
     "import": (
-        "design.tables:import_table",
+        "design.importing:import_file",
         "Write a design file from a table of anchor points.",
     ),
     "new": (

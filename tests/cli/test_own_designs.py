@@ -242,3 +242,23 @@ def test_a_home_position_that_is_no_number_names_the_option(gsp):
         assert gsp("import", "a.csv", "--home", home, 0, 1).error.startswith(
             "gsp: --home: expected"
         )
+
+
+@pytest.mark.parametrize("form", ["mjcf", "urdf", "sdf"])
+def test_models_become_design_files(gsp, form):
+    design = hexapod(2, 20, 1, 30, 1.5, degrees=True, strokes=(1.5, 2.5), unit="m", name="lift")
+    design.write("lift.toml")
+    written = gsp("export", "lift.toml", "--to", form).out.split()
+    assert gsp("import", written[0], "--unit", "mm", "--force").out.strip() == "lift.toml"
+    found = read_design("lift.toml")
+    assert (found.name, found.unit) == ("lift", "mm")
+    np.testing.assert_allclose(found.base_points, 1e3 * design.base_points, atol=1e-9)
+    np.testing.assert_allclose(found.strokes, 1e3 * design.strokes, rtol=1e-12)
+    np.testing.assert_allclose(found.home.position, [0, 0, 1500], atol=1e-9)
+    error = gsp("import", written[0], "--platform", "plate", "--out", "x.toml").error
+    assert "unknown platform 'plate'" in error
+
+
+def test_options_of_models_are_refused_for_tables(gsp):
+    Path("a.csv").write_text(LIFT.to_frame().to_csv(index=False))
+    assert "--platform" in gsp("import", "a.csv", "--platform", "top").error

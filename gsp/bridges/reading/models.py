@@ -1,0 +1,95 @@
+"""Designs from files of other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+
+from gsp import arguments
+from gsp.bridges.reading.designs import design_of
+from gsp.bridges.reading.linkages import Linkage
+from gsp.bridges.reading.mjcf import read_mjcf
+from gsp.bridges.reading.packages import design_of_package
+from gsp.bridges.reading.sdf import read_sdf
+from gsp.bridges.reading.urdf import read_urdf
+from gsp.checks import check_text
+from gsp.errors import GspError, MalformedFile, MissingSoftware, expected
+from gsp.model.design import Design
+
+READERS: Mapping[str, Callable[[Path, str, str], Linkage]] = MappingProxyType(
+    {".xml": read_mjcf, ".mjcf": read_mjcf, ".urdf": read_urdf, ".sdf": read_sdf}
+)
+PACKAGES = (".json", ".yaml", ".yml")
+FORMS = (*READERS, *PACKAGES)
+
+
+@arguments.validated(path=arguments.path, base=arguments.text, platform=arguments.text)
+def read_model(
+    path: str | PathLike[str],
+    *,
+    name: str | None = None,
+    base: str = "",
+    platform: str = "",
+) -> Design:
+    """Return the design of a model of another program, or of a file of a public package.
+
+    A model is a mechanism whose legs are chains between two bodies. Joints at the ends of a leg are
+    balls, two or three turns whose axes meet (S), or a slide and a turn along one line (C). Between
+    them is a slide, for CCC legs with a turn. The pose of the file is the home pose. Limits of
+    actuated joints are the strokes.
+
+    Parameters
+    ----------
+    path : path
+        Of a model of MuJoCo (.xml, .mjcf), in URDF (.urdf; its loops are in
+        `NAME.urdf.loops.json` beside it, as `export` writes them, or in <gazebo>) or SDF (.sdf), or
+        a file (.json, .yaml, .yml) of oKermorgant/cdpr, IRMA-LAB/cdpr_matlab or
+        64-B1T/basic_robotics.
+    name : str or None
+        Of the design; default that in the file.
+    base, platform : str
+        Names of the bodies, of models only. Default for the base: what is fixed to the world, or
+        the root; for the platform: the body to which most chains lead from there.
+
+    Returns
+    -------
+    Design
+        In metres. Anchors of lines lie where the joint is, unless the file states where the slide
+        counts zero (MJCF, and URDF and SDF with the file that `export` writes beside them).
+
+    Raises
+    ------
+    MalformedFile
+        With the file, and line or element and key of the first mistake, or with the joints of the
+        leg that is none of the catalogue.
+    MissingSoftware
+        If MJCF is read without MuJoCo, or YAML without PyYAML.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> import gsp
+    >>> design = gsp.catalogue.design("dehaeze-general")
+    >>> file = Path(mkdtemp(), "hexapod.urdf")
+    >>> _ = gsp.bridges.export(design, design.home, "urdf", file)
+    >>> gsp.bridges.read_model(file).legs[0].name
+    'D1'
+    """
+    if name is not None:
+        name = check_text("name", name)
+    file = Path(path)
+    suffix = file.suffix.lower()
+    if suffix not in FORMS:
+        wanted = "a model ending in " + ", ".join(FORMS)
+        raise MalformedFile(expected(str(file), wanted, suffix or "no suffix"))
+    try:
+        if suffix in PACKAGES:
+            return design_of_package(file, name)
+        return design_of(READERS[suffix](file, base, platform), name)
+    except (MalformedFile, MissingSoftware):
+        raise
+    except GspError as error:
+        raise MalformedFile(f"{file}: {error}") from error

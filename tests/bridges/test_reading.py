@@ -1,0 +1,417 @@
+"""Models and files of other programs become the designs that they are."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.bridges import Solids, export, read_model
+from gsp.bridges.exports import SUFFIXES
+from gsp.bridges.proof import BOX, random_design
+from gsp.errors import GspError, MalformedFile
+from gsp.geometry.pose import Pose
+from gsp.model.units import METRES_PER_UNIT
+from tests import campaign
+
+FORMS = ("mjcf", "urdf", "sdf")
+CLASSES = gsp.catalogue.mechanisms()[::17]
+LIFT = gsp.hexapod(2, 20, 1, 30, 1.5, degrees=True, unit="m", name="lift")
+
+
+def assert_same(found, design, tolerance=1e-12):
+    """Same legs, anchors, lines and home pose; the strokes of `found` are some of those."""
+    metres = METRES_PER_UNIT.get(design.unit, 1.0)
+    design = design.scaled(metres)
+    size = design.rms_radius * tolerance
+    assert [leg.name for leg in found.legs] == [leg.name for leg in design.legs]
+    np.testing.assert_allclose(found.base_points, design.base_points, rtol=0, atol=size)
+    np.testing.assert_allclose(found.platform_points, design.platform_points, rtol=0, atol=size)
+    for side in ("base_directions", "platform_directions"):
+        np.testing.assert_allclose(
+            getattr(found, side), getattr(design, side), rtol=0, atol=tolerance
+        )
+    np.testing.assert_allclose(found.home.position, design.home.position, rtol=0, atol=size)
+    np.testing.assert_allclose(found.home.rotation, design.home.rotation, rtol=0, atol=tolerance)
+    if design.strokes is not None:
+        known = np.isfinite(design.strokes).all(axis=1)
+        np.testing.assert_allclose(found.strokes[known], design.strokes[known], rtol=1e-12)
+
+
+def round_trip(design, form, folder, solids=None):
+    path = folder / f"model{SUFFIXES[form]}"
+    export(design, design.home, form, path, solids, overwrite=True)
+    return read_model(path)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("name", campaign.some(gsp.catalogue.design_names(), 7))
+def test_published_designs_come_back(name, form, tmp_path):
+    design = gsp.catalogue.design(name)
+    found = round_trip(design, form, tmp_path)
+    assert_same(found, design)
+    assert (found.name, found.unit) == (name, "m")
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("mechanism", campaign.some(CLASSES, 5), ids=str)
+def test_designs_of_each_class_come_back(mechanism, form, tmp_path):
+    rng = np.random.default_rng(4)
+    pose = BOX.sample(1, rng=rng)[0]
+    design = random_design(mechanism, rng).replace(home=pose)
+    assert_same(round_trip(design, form, tmp_path), design)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("scale", [1e-3, 1e4])
+def test_other_sizes_frames_redundant_legs_and_strokes(form, scale, tmp_path):
+    rng = np.random.default_rng(8)
+    legs = ["D1", "D2", "D3", "D4 A1", "A1", "D1", "D1", "D4"]
+    design = gsp.Design(
+        legs,
+        rng.normal(size=(8, 3)) * [2, 2, 0.1] + [40, 0, -3],
+        rng.normal(size=(8, 3)) + [0, 20, 0],
+        *rng.normal(size=(2, 8, 3)),
+        home=Pose.from_rpy([38, -20, 3], [0.3, -0.8, 2.0]),
+    )
+    values = design.at(design.home).joints
+    design = design.replace(strokes=np.stack((0.9 * values, 1.05 * values), axis=1)).scaled(scale)
+    solids = Solids(metres=1.0, density=2700.0 / scale**3)
+    found = round_trip(design, form, tmp_path, solids)
+    assert_same(found, design, 1e-11)  # the origin is twenty sizes away
+    np.testing.assert_allclose(
+        found.at(found.home).joints, design.at(design.home).joints, rtol=1e-11
+    )
+
+
+def test_without_the_file_beside_it_sdf_gives_the_same_mechanism(tmp_path):
+    """The anchors on lines lie at the joints: the same joint values and Jacobian."""
+    design = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2").scaled(1e-3)
+    path = tmp_path / "model.sdf"
+    export(design, design.home, "sdf", path, Solids(metres=1.0))
+    (tmp_path / "model.sdf.joints.json").unlink()
+    found = read_model(path)
+    one, other = found.at(found.home), design.at(design.home)
+    np.testing.assert_allclose(one.joints, other.joints, rtol=1e-12)
+    np.testing.assert_allclose(one.jacobian, other.jacobian, atol=1e-11)
+
+
+# Models as other people write them: universal joints, cylinders, sites, covers, another order.
+
+
+def ring(points):
+    return [" ".join(map(repr, map(float, p))) for p in points]
+
+
+def foreign_mjcf(design, *, lift=0.0, site=False):
+    """UPS legs of hinges, the platform first, with a cover on each leg."""
+    p = design.home.position + [0, 0, lift]
+    bodies, loops, sites = "", "", ""
+    for i, (a, b) in enumerate(zip(design.base_points, design.platform_points, strict=True)):
+        d = design.home.position + b - a
+        length = float(np.linalg.norm(d))
+        u = d / length
+        side = np.cross(u, [0.6, 0.0, 0.8])
+        side /= np.linalg.norm(side)
+        x, y = ring([side, np.cross(u, side)])
+        end = ring([0.3 * length * u])[0]
+        tip = ring([0.7 * length * u])[0]
+        bodies += f"""
+        <body name="tube{i}" pos="{ring([a])[0]}">
+          <joint type="hinge" axis="{x}"/><joint type="hinge" axis="{y}"/>
+          <geom type="sphere" size="0.01"/>
+          <body name="cover{i}"><joint type="hinge" axis="1 0 0"/>
+            <geom type="sphere" size="0.01"/></body>
+          <body name="rod{i}" pos="{end}">
+            <joint name="ram{i}" type="slide" axis="{ring([-u])[0]}" range="-0.2 0.1"/>
+            <geom type="sphere" size="0.01"/><site name="tip{i}" pos="{tip}"/></body>
+        </body>"""
+        sites += f'<site name="ball{i}" pos="{ring([b])[0]}"/>'
+        if site:
+            loops += f'<connect site1="ball{i}" site2="tip{i}"/>'
+        else:
+            loops += f'<connect body1="rod{i}" body2="top" anchor="{tip}"/>'
+    return f"""<mujoco model="foreign"><compiler autolimits="true" angle="radian"/><worldbody>
+      <body name="top" pos="{ring([p])[0]}"><freejoint/><geom type="box" size="1 1 0.1"/>{sites}
+      </body>{bodies}</worldbody><equality>{loops}</equality></mujoco>"""
+
+
+@pytest.mark.parametrize(("lift", "site"), [(0.0, False), (0.0, True), (0.4, True)])
+def test_ups_legs_in_mjcf(lift, site, tmp_path):
+    """Also with loops that are open in the file: anchors are those of the bodies."""
+    design = LIFT.with_origin([0.1, 0.2, 0.0]).replace(home=Pose([0.2, -0.1, 1.6]))
+    path = tmp_path / "foreign.xml"
+    path.write_text(foreign_mjcf(design, lift=lift, site=site))
+    found = read_model(path)
+    moved = design.replace(home=Pose(design.home.position + [0, 0, lift]))
+    assert_same(found, moved.replace(strokes=None), 1e-9)
+    lengths = design.at(design.home).joints  # the axis points to the base: the signs change
+    np.testing.assert_allclose(found.strokes[:, 0], lengths - 0.1, rtol=1e-9)
+    np.testing.assert_allclose(found.strokes[:, 1], lengths + 0.2, rtol=1e-9)
+    assert read_model(path, platform="top", base="world", name="x").name == "x"
+
+
+def foreign_sdf(design, kinds=("universal", "universal"), cylinder=True):
+    """UCU legs in the old and the new way to write frames."""
+    text, joints = "", ""
+    for i, (a, b) in enumerate(zip(design.base_points, design.platform_points, strict=True)):
+        d = design.home.position + b - a
+        length = float(np.linalg.norm(d))
+        u = d / length
+        x = np.cross(u, [0.6, 0.0, 0.8])
+        x /= np.linalg.norm(x)
+        place = Pose(a, np.stack((x, np.cross(u, x), u), axis=-1))
+        rpy = " ".join(map(repr, map(float, place.angles())))
+        pose = f"{ring([a])[0]} {rpy}"
+        turning = '<link name="turning{i}"><pose relative_to="tube{i}">0 0 0.2 0 0 0</pose></link>'
+        text += f'<link name="tube{i}"><pose>{pose}</pose></link>'
+        text += (
+            f'<link name="rod{i}"><pose relative_to="tube{i}">0 0 {length!r} 0 0 0</pose></link>'
+        )
+        text += turning.format(i=i) if cylinder else ""
+        two = "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>"
+        joints += f"""<joint name="low{i}" type="{kinds[0]}"><parent>frame</parent>
+          <child>tube{i}</child>{two if kinds[0] == "universal" else ""}</joint>"""
+        middle = f"turning{i}" if cylinder else f"tube{i}"
+        if cylinder:
+            joints += f"""<joint name="spin{i}" type="revolute"><parent>tube{i}</parent>
+              <child>turning{i}</child><axis><xyz>0 0 1</xyz></axis></joint>"""
+        joints += f"""<joint name="ram{i}" type="prismatic"><parent>{middle}</parent>
+          <child>rod{i}</child><axis><xyz>0 0 1</xyz><limit><lower>-0.5</lower></limit></axis>
+          </joint>
+          <joint name="high{i}" type="{kinds[1]}"><pose relative_to="rod{i}">0 0 0 0 0 0</pose>
+          <parent>rod{i}</parent><child>disc</child>{two if kinds[1] == "universal" else ""}
+          </joint>"""
+    home = ring([design.home.position])[0]
+    return f"""<?xml version="1.0"?><sdf version="1.7"><world name="w"><model name="other">
+      <frame name="up"><pose>0 0 1 0 0 0</pose></frame><link name="frame"/>
+      <joint name="ground" type="fixed"><parent>world</parent><child>frame</child></joint>
+      <link name="disc"><pose>{home} 0 0 0</pose></link>{text}{joints}</model></world></sdf>"""
+
+
+@pytest.mark.parametrize("kinds", [("universal", "universal"), ("ball", "universal")])
+def test_universal_joints_and_cylinders_in_sdf(kinds, tmp_path):
+    path = tmp_path / "other.sdf"
+    path.write_text(foreign_sdf(LIFT, kinds, cylinder=kinds[0] == "universal"))
+    found = read_model(path)
+    assert_same(found, LIFT)
+    lengths = LIFT.at(LIFT.home).joints
+    np.testing.assert_allclose(found.strokes[:, 0], lengths - 0.5, rtol=1e-12)
+    assert np.isnan(found.strokes[:, 1]).all()
+
+
+def test_loops_in_gazebo_elements_of_urdf(tmp_path):
+    path = tmp_path / "lift.urdf"
+    export(LIFT, LIFT.home, "urdf", path)
+    beside = tmp_path / "lift.urdf.loops.json"
+    loops = json.loads(beside.read_text())["loops"]
+    beside.unlink()
+    with pytest.raises(MalformedFile, match="the legs are open"):
+        read_model(path)
+    joints = "".join(
+        f"""<joint name="loop{i}" type="fixed"><parent>{x["link_1"]}</parent>
+        <child>{x["link_2"]}</child></joint>"""
+        for i, x in enumerate(loops)
+    )
+    text = path.read_text().replace("</robot>", f"<gazebo>{joints}</gazebo></robot>")
+    path.write_text(text)
+    assert_same(read_model(path, platform="platform"), LIFT)
+
+
+# What is wrong in a file is named.
+
+
+def spoiled(form, old, new, folder):
+    path = folder / f"bad{SUFFIXES[form]}"
+    export(LIFT, LIFT.home, form, path, overwrite=True)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    return path
+
+
+WRONG = {
+    "not xml": ("urdf", "</robot>", "", "line \\d+: not XML: no element found"),
+    "root": ("sdf", "<sdf ", "<sdg ", "line \\d+: not XML: mismatched"),
+    "kind": ("urdf", 'name="d1" type="prismatic"', 'name="d1" type="slide"',
+             'line \\d+, <joint name=.d1.>, type: expected one of fixed, .*received \'slide\''),
+    "parent": ("urdf", '<parent link="leg1_lower"', '<parent link="nobody"',
+               "line \\d+, <joint name=.d1.>, <parent> link: expected the name of a link"),
+    "number": ("urdf", '<axis xyz="0.0 0.0 1.0"', '<axis xyz="0.0 zero 1.0"',
+               "<axis> xyz: expected 3 finite numbers"),
+    "axis": ("urdf", '<axis xyz="0.0 0.0 1.0"', '<axis xyz="0 0 0"',
+             "<axis> xyz: expected a direction other than zero"),
+    "sdf child": ("sdf", "<child>leg2_upper</child>", "<child>nobody</child>",
+                  "line \\d+, <joint name=.d2.>, <child>: expected the name of a link"),
+    "sdf kind": ("sdf", 'name="d1" type="prismatic"', 'name="d1" type="screw"',
+                 "line \\d+, <joint name=.d1.>, type: expected one of"),
+    "sdf axis": ("sdf", "<xyz>0.0 0.0 1.0</xyz>", "<xyz>0 0</xyz>",
+                 "line \\d+, <axis>, <xyz>: expected 3 finite numbers, received '0 0'"),
+    "sdf leg": ("sdf", 'name="d1" type="prismatic"', 'name="d1" type="revolute"',
+                "leg 1 \\(joints leg1_base d1 leg1_platform\\): expected one slide"),
+    "mjcf": ("mjcf", 'joint="d1"', 'joint="d9"', "expected a model that MuJoCo reads.*line \\d+"),
+    "mjcf leg": ("mjcf", 'class="slide" type="slide"', 'type="hinge"',
+                 "leg 1 \\(joints .*: expected one slide, or a slide and a turn"),
+    "entities": ("urdf", '<?xml version="1.0"?>',
+                 '<?xml version="1.0"?><!DOCTYPE robot [<!ENTITY a "b">]>', "declarations of ent"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_errors_name_file_line_element_and_key(case, tmp_path):
+    form, old, new, message = WRONG[case]
+    path = spoiled(form, old, new, tmp_path)
+    with pytest.raises(MalformedFile, match=message) as error:
+        read_model(path)
+    assert str(error.value).startswith(str(path))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"loops"', "'loops'", "line \\d+: not JSON"),
+        ("leg3_platform", "nobody", "loop 'leg3', link_1: expected a link of lift.urdf"),
+        ('"link_2": "platform"', '"link_2": 3', "loops\\[0\\].link_2: expected a name"),
+        ('"position": [', '"position": [1, ', "loops\\[0\\].position: expected 3 numbers"),
+        ('"d1": ', '"d1": [], "x": ', "joints_at_zero.d1: expected a finite number"),
+    ],
+)
+def test_errors_of_the_file_beside(old, new, message, tmp_path):
+    path = tmp_path / "lift.urdf"
+    export(LIFT, LIFT.home, "urdf", path)
+    beside = tmp_path / "lift.urdf.loops.json"
+    text = beside.read_text()
+    assert old in text
+    beside.write_text(text.replace(old, new, 1))
+    with pytest.raises(MalformedFile, match=message):
+        read_model(path)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_bodies_that_are_not_there_are_named(form, tmp_path):
+    path = tmp_path / f"lift{SUFFIXES[form]}"
+    export(LIFT, LIFT.home, form, path)
+    with pytest.raises(GspError, match=r"unknown platform 'platfrom'.*platform"):
+        read_model(path, platform="platfrom")
+    with pytest.raises(MalformedFile, match=r"lift\..*expected"):
+        read_model(path, base="leg1_lower")
+
+
+def test_other_suffixes_and_missing_files(tmp_path):
+    with pytest.raises(MalformedFile, match=r"a model ending in \.xml"):
+        read_model(tmp_path / "a.txt")
+    with pytest.raises(MalformedFile, match=r"none\.urdf"):
+        read_model(tmp_path / "none.urdf")
+
+
+# Files of public packages, in the forms that their repositories have.
+
+POINTS = """# a cable robot
+platform:
+  mass: 150
+  position: {rpy: [0, 0, 0.5], xyz: [0.9, 0.9, 0.2]}
+points:
+""" + "".join(
+    f"- frame: [{x}, {y}, 3.5]\n  platform: [{a}, {b}, {c}]\n"
+    for x, y, a, b, c in [
+        (-3.5, -2.0, 0.6, -0.3, -0.2), (-3.5, -2.0, -0.6, 0.3, 0.2), (3.5, -2.0, -0.6, -0.3, 0.2),
+        (3.5, -2.0, 0.6, 0.3, -0.2), (-3.5, 2.0, -0.6, -0.3, -0.2), (-3.5, 2.0, 0.6, 0.3, 0.2),
+        (3.5, 2.0, 0.6, -0.3, 0.2), (3.5, 2.0, -0.6, 0.3, -0.2),
+    ]
+)  # fmt: skip
+
+
+def test_cable_robots_in_yaml(tmp_path):
+    """The form of oKermorgant/cdpr; the eight cables of caroca.yaml."""
+    path = tmp_path / "caroca.yaml"
+    path.write_text(POINTS)
+    found = read_model(path)
+    assert (found.name, found.n_legs, found.unit) == ("caroca", 8, "m")
+    np.testing.assert_array_equal(found.base_points[3], [3.5, -2.0, 3.5])
+    np.testing.assert_array_equal(found.platform_points[7], [-0.6, 0.3, -0.2])
+    expected = Pose.from_rpy([0.9, 0.9, 0.2], [0, 0, 0.5])
+    np.testing.assert_allclose(found.home.rotation, expected.rotation, atol=1e-15)
+
+
+def test_aliases_in_yaml_are_not_written_out(tmp_path):
+    """Each level has ten aliases of the one before: ten to the thirtieth entries in all."""
+    levels = [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 30)]
+    path = tmp_path / "aliases.yaml"
+    path.write_text("a0: &a0 [0]\n" + "".join(levels) + POINTS)
+    assert read_model(path).n_legs == 8
+
+
+def test_cable_robots_in_json(tmp_path):
+    """The form of IRMA-LAB/cdpr_matlab, with vectors as columns."""
+    actuators = [
+        {
+            "active": True,
+            "pulley": {"pos_OD_glob": [[x] for x in a], "radius": 0},
+            "winch": {"pos_PA_loc": b.tolist()},
+        }
+        for a, b in zip(LIFT.base_points, LIFT.platform_points, strict=True)
+    ]
+    path = tmp_path / "cables.json"
+    path.write_text(json.dumps({"actuator": [*actuators, {"active": False}]}))
+    found = read_model(path, name="mine")
+    np.testing.assert_array_equal(found.base_points, LIFT.base_points)
+    np.testing.assert_array_equal(found.platform_points, LIFT.platform_points)
+    assert (found.name, found.home) == ("mine", None)
+
+
+PLATES = {
+    "Name": "Basic SP",
+    "Type": "SP",
+    "BottomPlate": {"Thickness": 0.1, "JointRadius": 0.9, "JointSpacing": 9, "Mass": 6},
+    "TopPlate": {"Thickness": 0.16, "JointRadius": 0.3, "JointSpacing": 25, "Mass": 1},
+    "Actuators": {"MinExtension": 0.75, "MaxExtension": 1.5},
+    "Params": {"RestHeight": 1.2, "Spin": 30},
+}
+
+
+def test_plates_in_json(tmp_path):
+    """The form of 64-B1T/basic_robotics, whose tests have the published design."""
+    path = tmp_path / "sp.json"
+    path.write_text(json.dumps(PLATES))
+    assert_same(read_model(path), gsp.catalogue.design("basic-robotics-large"))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.yaml", POINTS.replace("[3.5, 2.0, 3.5]", "[3.5, x, 3.5]", 1),
+         r"a.yaml, line 18, key points\[6\].frame\[1\]: expected a finite number"),
+        ("a.yaml", POINTS.replace("  platform: [0.6, -0.3, -0.2]\n", "", 1),
+         r"a.yaml, line 6, key points\[0\].platform: expected a value, received none"),
+        ("a.yaml", POINTS.replace("xyz:", "yxz:"), "line 4, key platform.position.xyz: expected"),
+        ("a.yaml", "points: [1, 2", "a.yaml, line 1: not YAML"),
+        ("a.yml", "points: [1, 2]", "line 1, key points: expected a list of at least 6"),
+        ("a.json", json.dumps(PLATES).replace('"JointSpacing": 25', '"JointSpacing": "x"'),
+         "key TopPlate.JointSpacing: expected a finite number, received 'x'"),
+        ("a.json", json.dumps(PLATES).replace("RestHeight", "Rest"),
+         "key Params.RestHeight: expected a value, received none"),
+        ("a.json", '{"a": 1,}', "a.json, line 1: not JSON"),
+        ("a.json", '{"legs": 6}', "expected a file of oKermorgant/cdpr, .*received legs"),
+        ("a.json", "[" * 100000, "not JSON"),
+        ("a.json", json.dumps({"actuator": [{"active": False}] * 6}), "at least 6 active"),
+        ("a.json", json.dumps(PLATES).replace("0.3", "NaN"), "TopPlate.JointRadius: expected a"),
+        ("a.json", json.dumps(PLATES).replace("0.9", "-0.9"), "a.json: base_radius: expected"),
+    ],
+)  # fmt: skip
+def test_errors_of_packages_name_line_and_key(name, text, message, tmp_path):
+    path = tmp_path / name
+    path.write_text(text)
+    with pytest.raises(MalformedFile, match=message):
+        read_model(path)
+
+
+def test_legs_of_five_freedoms_and_offset_slides_are_refused(tmp_path):
+    path = tmp_path / "upu.sdf"
+    text = foreign_sdf(LIFT, cylinder=False)
+    path.write_text(text)
+    with pytest.raises(MalformedFile, match=r"leg 1 .*expected at least 6 freedoms"):
+        read_model(path)
+    path.write_text(foreign_sdf(LIFT).replace("0 0 0.2 0 0 0", f"0.3 0 0.2 {math.pi / 2} 0 0"))
+    with pytest.raises(MalformedFile, match=r"leg 1 .*expected"):
+        read_model(path)
