@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from gsp.kinematics.travels import Travel, travel
     from gsp.limits import Feasibility, Limits, feasible
     from gsp.model.design import Design, read_design
+    from gsp.model.drives import Crank, Slider
     from gsp.model.mechanism import Mechanism
     from gsp.model.posture import Posture
     from gsp.proof.boxes import certify
@@ -88,6 +89,7 @@ PACKAGES = (
 HOMES = {
     "Calibration": "gsp.calibration",
     "Certificate": "gsp.proof",
+    "Crank": "gsp.model.drives",
     "Design": "gsp.model.design",
     "Ellipsoid": "gsp.geometry.ellipsoid",
     "Feasibility": "gsp.limits",
@@ -99,6 +101,7 @@ HOMES = {
     "PoseBox": "gsp.geometry.pose",
     "PosePath": "gsp.geometry.pose",
     "Posture": "gsp.model.posture",
+    "Slider": "gsp.model.drives",
     "Space": "gsp.exploration",
     "Task": "gsp.exploration",
     "Tolerances": "gsp.proof",
@@ -136,6 +139,7 @@ __all__ = [
     "AssemblyModes",
     "Calibration",
     "Certificate",
+    "Crank",
     "Design",
     "Ellipsoid",
     "Feasibility",
@@ -148,6 +152,7 @@ __all__ = [
     "PoseBox",
     "PosePath",
     "Posture",
+    "Slider",
     "Space",
     "Task",
     "Tolerances",

@@ -269,6 +269,8 @@ class Later:
 
 # Arguments of single callables, by the end of their full name.
 OVERRIDES: dict[str, dict[str, Any]] = {
+    "drives.Slider": {"rod": 2.0, "branch": -1},
+    "drives.Crank": {"arm": [0.5, 0.0, 0.0], "rod": 2.0, "branch": -1},
     "tolerances.Tolerances": {
         "base_points": 0.1, "platform_points": 0.1, "base_directions": 0.01,
         "platform_directions": 0.01, "joints": np.full(6, 0.1),

@@ -96,11 +96,18 @@ def dimensions(design: Design) -> str:
         "platform direction": design.platform_directions,
     }
     used = {head: rows for head, rows in columns.items() if (rows == rows).any()}
+    drives = ("drive",) if design.driven else ()
     rows = [
-        (i + 1, leg.name, leg.chain, *(numbers(c[i]) for c in used.values()))
+        (
+            i + 1,
+            " ".join(constraint.name for constraint in leg.constraints),
+            leg.chain,
+            *(numbers(c[i]) for c in used.values()),
+            *[str(leg.drive) for _ in drives],
+        )
         for i, leg in enumerate(design.legs)
     ]
-    return table(("leg", "constraints", "chain", *used), rows)
+    return table(("leg", "constraints", "chain", *used, *drives), rows)
 
 
 def strokes(design: Design) -> str:

@@ -12,6 +12,7 @@ ROOT = Path(__file__).parents[1]
 # The order of the pages of docs/. One that is in no list comes at the end of the guide.
 GUIDE = (
     "docs/own-designs.md",
+    "docs/drives.md",
     "docs/choosing-an-index.md",
     "docs/exploration.md",
     "docs/kinematics.md",

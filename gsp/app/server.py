@@ -20,7 +20,7 @@ from gsp.app.searches import Searches
 from gsp.app.state.reading import compile_slow
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.kinematics.forward_solution import forward
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 # Bytes of a message of a page, and seconds that open pages get when the server ends.
 LARGEST_MESSAGE, SECONDS_TO_END = 1 << 20, 2
@@ -49,6 +49,7 @@ def serve(design: Design, host: str, port: int, say: Callable[[str], object] = p
     InvalidInput
         If the address cannot be listened at.
     """
+    check_undriven("design", design)
     listening = bound(host, port)
     searches = Searches()
     app = guarded(application(design, searches), host)

@@ -14,11 +14,10 @@ from typing import Literal
 
 import numpy as np
 
-from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, perpendicular, unit
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.legs import Leg
 from gsp.model.posture import Posture
 
@@ -117,7 +116,7 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
     ['leg4_base_slide', 'leg4_base_turn', 'd4', 'theta4', 'leg4_platform_slide', \
 'leg4_platform_turn']
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     posture = design.at(pose)
     if pose.shape:
         raise InvalidInput(expected("pose", "a single pose", f"a batch of shape {pose.shape}"))

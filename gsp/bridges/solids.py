@@ -15,7 +15,7 @@ from gsp.checks import check_positive, is_a
 from gsp.errors import InvalidInput, MissingParameter, apart, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.units import METRES_PER_UNIT
 from gsp.statics import Masses
 
@@ -68,7 +68,7 @@ class Solids:
                 # A number of numpy would be written as "np.float64(1.0)".
                 object.__setattr__(self, name, number)
 
-    @arguments.validated(design=arguments.kind(Design))
+    @arguments.validated(design=check_undriven)
     def unit(self, design: Design) -> float:
         """Return the length of the design's unit.
 

@@ -17,13 +17,13 @@ from gsp.calibration.result import Calibration
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.dimensions import PARTS, Dimensions
 from gsp.progress import Progress, meter
 
 
 @arguments.validated(
-    design=arguments.kind(Design, "a gsp.Design"),
+    design=check_undriven,
     guess=arguments.optional(arguments.kind(Pose, "a gsp.Pose or None")),
     free=arguments.names,
     loss=arguments.one_of(*LOSSES),

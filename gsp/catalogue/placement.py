@@ -9,7 +9,7 @@ import numpy as np
 from gsp.checks import check_items, check_type, is_a, plain_text
 from gsp.errors import InvalidDesign, brief, expected
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.legs import LEG, LEGS, check_leg
 from gsp.model.mechanism import Mechanism
 
@@ -86,6 +86,7 @@ def place(legs: str | Sequence[str], template: Design) -> Design:
     'D1^3 D2^3'
     """
     check_type("template", template, Design, "a gsp.Design (see catalogue.design)")
+    check_undriven("template", template)
     word = read_word(legs)
     if len(word) != template.n_legs:
         wanted = f"{template.n_legs} legs, one per position of the template, {NO_LEG} for none"
@@ -162,6 +163,7 @@ def spread(mechanism: Mechanism, template: Design) -> Word:
     """
     check_type("mechanism", mechanism, Mechanism, "a gsp.Mechanism (see catalogue.mechanism)")
     check_type("template", template, Design, "a gsp.Design (see catalogue.design)")
+    check_undriven("template", template)
     legs, n = mechanism.legs, template.n_legs
     if n < len(legs):
         raise InvalidDesign(expected("template", f"at least {len(legs)} legs for {mechanism}", n))

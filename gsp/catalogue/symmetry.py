@@ -13,7 +13,7 @@ from gsp.errors import InvalidDesign, InvalidInput, expected
 from gsp.geometry.congruence import Figure
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array, norm
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.design.symmetry import Symmetry, symmetries_between
 
 # Papers print coordinates to four or five digits: their symmetries hold to 1e-5 of the size.
@@ -27,7 +27,7 @@ Order = tuple[tuple[int, ...], bool]
 
 
 @arguments.validated(
-    template=arguments.kind(Design, "a gsp.Design (see catalogue.design)"),
+    template=check_undriven,
     reflections=arguments.flag,
     exchange=arguments.flag,
     tolerance=arguments.one(arguments.within(1e-12, LARGEST_TOLERANCE)),

@@ -40,7 +40,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import SMALLEST
 from gsp.geometry.vectors import EPS, Array, norm
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.mechanism import Mechanism
 
 
@@ -103,7 +103,7 @@ def _six_bounded(rows: Counter[str]) -> bool:
     return not d2 or not d3 or d1 >= 3 or (d1 == 2 and a1 == 2)
 
 
-@arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
+@arguments.validated(design=check_undriven)
 def upper_bound(design: Design) -> float:
     """Return a number that |det J| does not exceed at any pose, or inf where none is known.
 

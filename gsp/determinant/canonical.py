@@ -29,7 +29,7 @@ from gsp.determinant.domain import Neighbourhood, SearchRegion
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import nearest_rotations
 from gsp.geometry.vectors import Array, norm
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 # Designs whose coordinates differ by less than this share of their size are the same. A maximum
 # where the slope vanishes differs by the square of it.
@@ -113,8 +113,13 @@ def canonical(design: Design, region: SearchRegion = None) -> Canonical:
     Returns
     -------
     Canonical
+
+    Raises
+    ------
+    InvalidDesign
+        For legs that are driven at the base, whose |det J| has no bound near a singular drive.
     """
-    size = design.rms_radius
+    size = check_undriven("design", design).rms_radius
     # A determinant without a unit is multiplied by no power of the length.
     length = size if design.determinant_has_unit else 1.0
     if isinstance(region, PoseBox):

@@ -18,7 +18,7 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.rotations import angle_of
 from gsp.geometry.vectors import Array, Mask, frozen, norm
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.posture.evaluated import arm_of_centre
 
 # Greatest angle of rotation about home in the default neighbourhood.
@@ -198,7 +198,7 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
 
     *Source: ours; docs/quality-index.md*
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     home = design.home
     if home is None:
         raise MissingParameter(

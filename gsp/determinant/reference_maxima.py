@@ -19,7 +19,7 @@ from gsp.determinant.store import StoreError, carried, offer, open_store
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.progress import Progress
 
 # λ above 1 by more than this is not rounding: the maximum is too low.
@@ -68,7 +68,7 @@ def reference(design: Design, progress: Progress = None) -> Maximum:
 
 @arguments.validated(
     found=arguments.kind(Maximum),
-    design=arguments.kind(Design),
+    design=check_undriven,
     pose=arguments.kind(Pose),
     quality=arguments.array(finite=False),
 )

@@ -175,8 +175,13 @@ def _by_functions(posture: Posture, names: Sequence[str], settings: Settings) ->
 
 
 def with_compiled(block: Block) -> Values:
-    """Evaluate a block in compiled code; indices that it does not cover are left to numpy."""
+    """Evaluate a block in compiled code; what it does not cover is left to numpy.
+
+    It covers no design with a leg that is driven at the base.
+    """
     design, settings = block.design, block.settings
+    if design.driven:
+        return with_numpy(block)
     read = {
         name: COMPILED[name]
         for name in block.names

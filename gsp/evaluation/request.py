@@ -29,6 +29,9 @@ BLOCKS_PER_DESIGN = 32
 # Slow indices take 30 to 60 µs per pose, and compiled ones less than one: a block of them ends
 # soon, as progress and Ctrl-C wait for it.
 SLOW_POSES_PER_BLOCK = 128
+# Indices that "all" leaves out for designs with legs that are driven at the base: one needs bounds
+# of the rows, the other a maximum of |det J|, which has no bound there.
+NOT_OF_DRIVES = ("singularity_distance", "quality_index")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -168,7 +171,10 @@ def names_for(given: Iterable[str] | str, designs: Sequence[Design]) -> tuple[st
         return names
     numbers = {len(design.joint_names) for design in designs}
     defined = (None, *numbers) if len(numbers) == 1 else (None,)
-    return tuple(name for name in names if INDICES[name].actuators in defined)
+    left_out = NOT_OF_DRIVES if any(design.driven for design in designs) else ()
+    return tuple(
+        name for name in names if INDICES[name].actuators in defined and name not in left_out
+    )
 
 
 def choose_indices(

@@ -29,11 +29,18 @@ def defined_matrices(matrix: Array) -> Mask:
 
 
 def singular_values(matrix: Array) -> Array:
-    """Singular values, descending: (..., m, 6) to (..., 6); NaN where the matrix has a NaN."""
+    """Singular values, descending: (..., m, 6) to (..., 6); NaN where the matrix has a NaN.
+
+    Where entries are infinite the largest is infinite and the others are zero: relative to it they
+    are below rounding.
+    """
     defined = defined_matrices(matrix)
     safe = np.where(defined[..., None, None], matrix, 0.0)
-    values = np.linalg.svd(safe, compute_uv=False)
-    return np.where(defined[..., None], values, np.nan)
+    values = np.where(defined[..., None], np.linalg.svd(safe, compute_uv=False), np.nan)
+    if not defined.all():
+        endless = ~defined & ~np.isnan(matrix).any(axis=(-2, -1))
+        values[endless] = [np.inf] + [0.0] * (values.shape[-1] - 1)
+    return values
 
 
 def reciprocal_condition(values: Array) -> Array:

@@ -72,6 +72,20 @@ def arc(sine: Scalar, cosine: Scalar) -> Scalar:
     return _apply("atan2", sine, cosine)
 
 
+def full_arc(sine: Scalar, cosine: Scalar) -> Scalar:
+    """Angle in (−π, π] [rad] from multiples of its sine and of its cosine; not of complex numbers.
+
+    Parameters
+    ----------
+    sine, cosine : real scalars of the same kind
+    """
+    if isinstance(sine, np.ndarray):
+        return np.arctan2(sine, cosine)
+    if isinstance(sine, float | int):
+        return math.atan2(sine, cosine)
+    return _apply("atan2", sine, cosine)
+
+
 def _apply(name: str, x: Any, *others: Any) -> Any:
     """Call a method of a number, or the function of that name of its mpmath context."""
     method = getattr(x, name, None)

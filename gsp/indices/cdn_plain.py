@@ -11,6 +11,7 @@ from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.indices.spectra import extremes
 from gsp.model.posture import Posture
+from gsp.model.posture.assembled import finite_rows
 from gsp.model.posture.slopes import Slopes
 
 
@@ -44,7 +45,8 @@ def condition_number_plain(posture: Posture) -> Array:
 
 
 def _about_base(posture: Posture) -> Array:
-    return about_point(posture.jacobian, -posture.pose.position[..., None, :])
+    rows = finite_rows(posture, posture.jacobian)
+    return about_point(rows, -posture.pose.position[..., None, :])
 
 
 def _slope(slopes: Slopes) -> Array:

@@ -12,11 +12,12 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import reciprocal_condition, singular_values, whiten
 from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.indices.record import ALL_SIX, Index, Invariance
-from gsp.indices.requirements import require_posture
+from gsp.indices.requirements import require_posture, with_stalls
 from gsp.indices.spectra import whitened_extremes
 from gsp.model.design import Design
 from gsp.model.formulas import ZERO
 from gsp.model.posture import Posture
+from gsp.model.posture.assembled import finite_rows
 from gsp.model.posture.slopes import Slopes
 
 # Triangles whose areas differ by less than this share are equally large: above the rounding of
@@ -61,13 +62,14 @@ def condition_number_points(
     """
     require_posture(posture)
     given = None if points is None else _check_points(points)
-    in_platform = _turned(posture.weighted(length), posture.pose.rotation)
+    rows = finite_rows(posture, posture.weighted(length))
+    in_platform = _turned(rows, posture.pose.rotation)
     least = np.full(posture.shape, np.nan)
     for chosen in largest_triangles(posture.design) if given is None else given[None]:
         values = singular_values(whiten(in_platform, _velocities(chosen)))
         least = np.fmin(least, reciprocal_condition(values))
     with np.errstate(divide="ignore"):
-        return np.asarray(1.0 / least)
+        return with_stalls(posture, np.asarray(1.0 / least), np.inf)
 
 
 def _turned(rows: Array, turn: Array) -> Array:

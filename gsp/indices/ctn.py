@@ -10,6 +10,7 @@ from gsp.indices.record import ALL_SIX, Index, Invariance
 from gsp.indices.requirements import require_posture
 from gsp.indices.spectra import whitened_extremes
 from gsp.model.posture import Posture
+from gsp.model.posture.assembled import finite_rows
 from gsp.model.posture.slopes import Slopes
 
 
@@ -42,7 +43,8 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
     platform; of an A1 leg the slide along the common normal is passive, too.*
     """
     require_posture(posture)
-    rows = whiten(posture.weighted(length), posture.passive_rates(length))
+    rates = finite_rows(posture, posture.weighted(length))
+    rows = whiten(rates, posture.passive_rates(length))
     # A twist that moves no passive joint exists at singular postures only (Nawratil, Theorem 4).
     finite = defined_matrices(rows)
     values = singular_values(np.where(finite[..., None, None], rows, 0.0))

@@ -7,9 +7,10 @@ import numpy as np
 from gsp.geometry.matrices import defined_matrices, rounding_of_rank, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
-from gsp.indices.requirements import require_posture
+from gsp.indices.requirements import require_posture, with_stalls
 from gsp.indices.spectra import decomposed, extremes, of_block
 from gsp.model.posture import Posture
+from gsp.model.posture.assembled import finite_rows
 from gsp.model.posture.slopes import Slopes
 
 
@@ -40,9 +41,10 @@ def complex_deviation_rotation(posture: Posture, length: float | None = None) ->
     Σ d_i² under cᵀc = 1, for UPS legs; other legs are our extension.*
     """
     require_posture(posture)
-    rows = posture.weighted(length)
+    rows = finite_rows(posture, posture.weighted(length))
     forces, moments = rows[..., :3], rows[..., 3:]
-    return _least(without_span(moments, forces), np.linalg.norm(moments, axis=(-2, -1)))
+    least = _least(without_span(moments, forces), np.linalg.norm(moments, axis=(-2, -1)))
+    return with_stalls(posture, least, 0.0)
 
 
 def complex_deviation_translation(posture: Posture) -> Array:
@@ -71,8 +73,9 @@ def complex_deviation_translation(posture: Posture) -> Array:
     than UPS are our extension; A1 actuators do not move in a translation.*
     """
     require_posture(posture)
-    forces = posture.jacobian[..., :3]
-    return _least(forces, np.linalg.norm(forces, axis=(-2, -1)))
+    forces = finite_rows(posture, posture.jacobian)[..., :3]
+    least = _least(forces, np.linalg.norm(forces, axis=(-2, -1)))
+    return with_stalls(posture, least, 0.0)
 
 
 def without_span(matrix: Array, span: Array) -> Array:

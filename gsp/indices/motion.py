@@ -13,7 +13,9 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.matrices import (
     defined_matrices,
+    full_rank,
     rounding_of_rank,
+    singular_values,
     solve_right_triangular,
     triangular_root,
     whiten,
@@ -215,13 +217,27 @@ def instantaneous_motion(
 
 def _by_control_number(posture: Posture, length: float | None) -> InstantaneousMotion:
     """J R⁻¹ = U Σ Vᵀ with T = RᵀR: the eigenvectors are the columns of R⁻¹ V."""
-    metric = posture.passive_rates(length)
+    metric = _defined_metric(posture, length)
     right, values = _right_vectors(whiten(posture.weighted(length), metric))
     inverse = solve_right_triangular(np.eye(6), triangular_root(metric))
     with np.errstate(invalid="ignore"):
         twists = inverse @ right
     twists = _without_rounded_turns(twists, posture.design.rms_radius)
     return InstantaneousMotion(twists, values, posture.pose.position)
+
+
+def _defined_metric(posture: Posture, length: float | None) -> Array:
+    """Return the passive rates; NaN where drives on parallel rails leave them without full rank.
+
+    Then a translation of all carriages moves no passive joint, at regular postures too, and has no
+    unit size.
+    """
+    metric = posture.passive_rates(length)
+    if not posture.design.driven:
+        return metric
+    size = posture.design.rms_radius
+    scaled = metric * np.where(np.arange(6) < 3, size, 1.0)
+    return np.where(full_rank(singular_values(scaled))[..., None, None], metric, np.nan)
 
 
 def _without_rounded_turns(twists: Array, size: float) -> Array:

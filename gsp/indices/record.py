@@ -320,7 +320,7 @@ class Index(ReadOnly):
         legs = {
             "": False,
             "angular": bool(design.angular.any()),
-            "cylindrical": design.cylindrical,
+            "cylindrical": design.cylindrical or bool(design.angular.any()),
         }
         needs = (*self.needs, "length") if legs[self.length_for] else self.needs
         missing_names = tuple(name for name in dict.fromkeys(needs) if name not in given)

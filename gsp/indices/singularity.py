@@ -8,6 +8,7 @@ from gsp import arguments
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
+from gsp.model.design import check_undriven
 from gsp.model.posture import Posture
 
 
@@ -34,6 +35,8 @@ def singularity_distance(posture: Posture, length: float) -> Array:
     ------
     InvalidInput
         If `length` is not a positive number.
+    InvalidDesign
+        For legs that are driven at the base.
 
     Examples
     --------
@@ -48,6 +51,7 @@ def singularity_distance(posture: Posture, length: float) -> Array:
     from gsp.variation.free import free_radii
 
     require_posture(posture)
+    check_undriven("design of the posture", posture.design)
     scale = arguments.size("length", length)
     pose = posture.pose.reshape(posture.pose.size)
     radii = free_radii(posture.design, pose.position, pose.rotation, scale)

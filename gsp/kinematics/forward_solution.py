@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,13 +15,16 @@ from gsp.evaluation.backends import check_backend
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
+from gsp.kinematics.driven import held, on_branches, usable
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
+
+Solver = Callable[[Centred, Array, Pose, float, int], tuple[Pose, Array]]
 
 # By the numbers of `gsp.kinematics.newton.control`, and that of a pose by `fallback="modes"`.
 STATUS = np.array(["", "converged", "not converged", "singular", "undefined", "nearest mode"])
-CONVERGED, NEAREST_MODE = 1, 5
+CONVERGED, NOT_CONVERGED, UNDEFINED, NEAREST_MODE = 1, 2, 4, 5
 STATUS.flags.writeable = False
 # Views of them, of shape (), for one pose; and usual numbers of iterations.
 STATUSES = tuple(STATUS[i, ...] for i in range(len(STATUS)))
@@ -105,6 +109,10 @@ def forward(
     For more than six actuators the steps are least-squares ones, the proof is that the rank stays
     six, and values that contradict each other do not converge.
 
+    With drives at the base the rods are the legs, between the platform and their tips, which the
+    joint values give. What is above holds for the design of these D1 legs, and errors are those of
+    the lengths of the rods. A pose on another branch of a drive has the status "not converged".
+
     Parameters
     ----------
     design : Design
@@ -123,7 +131,8 @@ def forward(
     fallback : "modes" or None
         What follows where no path of regular postures leads to a pose, as from guesses half a turn
         away: nothing, or "modes", the nearest regular assembly mode that `gsp.assembly_modes` finds
-        (distances as in `gsp.nearest`), for six actuators. About 10 ms per element for SPS legs.
+        (distances as in `gsp.nearest`), for six actuators, none of them a drive at the base. About
+        10 ms per element for SPS legs.
         Such a pose has the status "nearest mode", and may be beyond singular postures.
 
     Returns
@@ -155,7 +164,12 @@ def forward(
     by_numpy = check_backend(backend) == "numpy" or target.shape[-1] > 6
     solver = _with_numpy if by_numpy else _with_compiled
     modes = check_fallback(fallback, target.shape[-1])
-    pose, numbers = solver(centred(design), target, start, limit, most)
+    if design.driven:
+        if modes:
+            check_undriven("design, for fallback='modes'", design)
+        pose, numbers = _with_drives(solver, design, target, start, limit, most)
+    else:
+        pose, numbers = solver(centred(design), target, start, limit, most)
     if modes:
         pose = _with_modes(design, target, start, limit, pose, numbers)
     ends = numbers[:, 0].astype(np.int64).reshape(shape)
@@ -197,6 +211,26 @@ def _with_compiled(
         numbers,
     )
     return unchecked(Pose, position, rotation.reshape(-1, 3, 3)), numbers
+
+
+def _with_drives(
+    solver: Solver, design: Design, joints: Array, guess: Pose, tolerance: float, most: int
+) -> tuple[Pose, Array]:
+    """Return poses and numbers as the solvers do, element by element: each has its own tips."""
+    n = len(joints)
+    position, rotation = np.full((n, 3), np.nan), np.full((n, 3, 3), np.nan)
+    numbers = np.tile([UNDEFINED, np.nan, 0.0], (n, 1))
+    for i in range(n):
+        if not usable(joints[i]):
+            continue
+        rods, values = held(design, joints[i])
+        near = guess[[i if guess.size > 1 else 0]]
+        pose, numbers[i : i + 1] = solver(centred(rods), values[None], near, tolerance, most)
+        position[i], rotation[i] = pose.position[0], pose.rotation[0]
+        found = numbers[i, 0] == CONVERGED
+        if found and not on_branches(design, joints[i], position[i], rotation[i]):
+            position[i], rotation[i], numbers[i, 0] = np.nan, np.nan, NOT_CONVERGED
+    return unchecked(Pose, position, rotation), numbers
 
 
 def _with_modes(

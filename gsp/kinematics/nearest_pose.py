@@ -19,7 +19,7 @@ from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import DIFFERENCE_STEP
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 # By how much the nearest pose may violate a limit: distances as a share of the size, others as
 # they are.
@@ -104,7 +104,7 @@ def nearest(
     >>> bool((d.at(found.pose).joints <= 150 + 1e-6).all()), found.distance < 0.1
     (True, True)
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_type("pose", pose, Pose)
     if pose.shape or not np.isfinite(pose.position).all():
         raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))

@@ -21,7 +21,7 @@ from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
 from gsp.kinematics.forward_solution import COUNTS, STATUSES, ForwardSolution, forward
 from gsp.kinematics.newton.centred import centred
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 DEFAULT_INDEX = "condition_number"
 
@@ -66,7 +66,7 @@ class Prepared:
         ellipsoid: Ellipsoid | None,
         maximum: Maximum,
     ) -> None:
-        check_type("design", design, Design)
+        check_undriven("design", design)
         self._given = (design, index, length, ellipsoid, maximum)
         self.design, self.index_name = design, index_name(DEFAULT_INDEX if index is None else index)
         settings = settings_of(design, length, ellipsoid, *maximum_of_each(maximum, [design]))

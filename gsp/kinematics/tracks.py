@@ -14,7 +14,7 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
 from gsp.kinematics.newton.centred import Centred, centred
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 # How a track ends, by the numbers of `gsp.kinematics.newton.tracking`.
 ENDS = ("", "complete", "not converged", "singular", "undefined", "gap")
@@ -213,7 +213,7 @@ def _of_two_lines(design: Design) -> Mask:
 
 
 def _samples(design: Design, joints: ArrayLike) -> Array:
-    check_type("design", design, Design)
+    check_undriven("design", design)
     n = len(design.joint_names)
     if n != 6:
         raise InvalidInput(expected("design", "six actuators", n))

@@ -17,7 +17,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
 from gsp.kinematics.newton.control import PROVEN_SHARE
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.design.checks import check_strokes, open_strokes
 from gsp.variation.legs import KINDS, Kind
 
@@ -127,7 +127,7 @@ def _name(design: Design, number: int, bounds: Array) -> str:
 def _check(
     design: Design, pose: Pose, direction: ArrayLike, strokes: ArrayLike | None
 ) -> tuple[Pose, Array, Array]:
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_type("pose", pose, Pose)
     if pose.shape or not np.isfinite(pose.position).all():
         raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
@@ -139,7 +139,7 @@ def _check(
         wanted = "six numbers, not all zero, the largest between 1e-100 and 1e100"
         raise InvalidInput(expected("direction", wanted, twist.tolist()))
     given = design.strokes if strokes is None else strokes
-    return pose, twist, open_strokes(check_strokes(given, design.angular), n)
+    return pose, twist, open_strokes(check_strokes(given, design.signed), n)
 
 
 @dataclass(frozen=True, eq=False)

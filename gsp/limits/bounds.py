@@ -34,7 +34,7 @@ from gsp.limits.quantities import (
     point_distances,
     positions,
 )
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.design.checks import check_bounds, check_strokes, open_strokes
 from gsp.model.posture import Posture
 
@@ -58,7 +58,7 @@ class _Bounded(NamedTuple):
 
 
 def bounded_quantities(
-    design: Design, limits: Limits | None = None, *, crossed: bool = False
+    design: Design, limits: Limits | None = None, *, crossed: bool = False, driven: bool = False
 ) -> BoundedQuantities:
     """Return the limits of a design as quantities between bounds, joints first.
 
@@ -70,6 +70,8 @@ def bounded_quantities(
     crossed : bool
         Allow least = greatest (a locked actuator); otherwise it is an error, as the workspace has
         no interior.
+    driven : bool
+        Allow legs that are driven at the base, with limits other than cones and clearances.
 
     Returns
     -------
@@ -86,6 +88,10 @@ def bounded_quantities(
     if limits is not None:
         check_type("limits", limits, Limits, "a gsp.Limits or None")
     given = Limits() if limits is None else limits
+    # Cones and clearances are those of the legs, not of carriages, cranks and their joints.
+    of_legs = (given.base_cone, given.platform_cone, given.leg_radius)
+    if not driven or any(limit is not None for limit in of_legs):
+        check_undriven("design", design)
     bounds = _strokes(design, given)
     named, parts = joint_quantities(design), [_joints(design)]
     sizes = [np.where(design.angular, 1.0, design.rms_radius)]
@@ -114,7 +120,7 @@ def bounded_quantities(
 
 def _strokes(design: Design, limits: Limits) -> Array:
     chosen = design.strokes if limits.strokes is None else limits.strokes
-    checked = check_strokes(chosen, design.angular, "limits.strokes")
+    checked = check_strokes(chosen, design.signed, "limits.strokes")
     return open_strokes(checked, len(design.joint_names))
 
 

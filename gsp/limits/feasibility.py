@@ -155,7 +155,7 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
     'd1 = 143.909 > 140; d3 = 155.211 > 140'
     """
     check_type("pose", pose, Pose)
-    bounds = bounded_quantities(design, limits, crossed=True)
+    bounds = bounded_quantities(design, limits, crossed=True, driven=True)
     flat = pose.reshape(pose.size)
     values = np.empty((pose.size, len(bounds.names)))
     for start in range(0, pose.size, POSES_PER_CHECK):

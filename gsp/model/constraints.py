@@ -1,4 +1,7 @@
-"""The constraints D1–D4 and A1: records of the formulas of their segments, values and rows."""
+"""The constraints D1–D4 and A1: records of the formulas of their segments, values and rows.
+
+Those of legs that are driven at the base are D1 constraints, whose value is that of the drive.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,7 @@ from gsp.model.formulas import (
     point_line,
     point_point,
 )
+from gsp.model.rods import crank, driven_row, joint_value, slider, slider_row
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,19 +37,25 @@ class Constraint:
     base, platform : "point" or "line"
         The primitives that it relates.
     quantity : "distance" or "angle"
-        The actuated quantity; a distance has the unit of the design, an angle is in radians.
+        The actuated quantity; a distance has the unit of the design, an angle is in radians. The
+        travel of a slider counts as a distance.
     exchanged : str
-        Name of the constraint that it becomes where base and platform are exchanged.
+        Name of the constraint that it becomes where base and platform are exchanged; "" where
+        that is none of ours.
     segment : Placement -> Segment
         The segment between its feet.
     measure : Segment -> scalar
-        Its value: a distance ≥ 0, or an angle in (0, π).
+        Its value: a distance ≥ 0, or an angle in (0, π); of a drive of either sign.
     row : Segment, weight -> six scalars
         Gradient of that value with respect to the twist (v, ω), times the weight for an angle.
     undefined : str
         Why there is no row, where there is none.
     source : str
         Equations of value and row.
+    driven : bool
+        Whether it is the value of a drive at the base.
+    stalled : str
+        Where the row is infinite, of a drive.
     """
 
     name: str
@@ -58,6 +68,13 @@ class Constraint:
     row: Callable[[Segment, Scalar], Vector]
     undefined: str
     source: str
+    driven: bool = False
+    stalled: str = ""
+
+    @property
+    def signed(self) -> bool:
+        """Whether its value may be negative, as far as its bounds state it."""
+        return self.driven or self.quantity == "angle"
 
     @property
     def symbol(self) -> str:
@@ -135,3 +152,34 @@ CONSTRAINTS = (
 )
 
 CONSTRAINT = MappingProxyType({constraint.name: constraint for constraint in CONSTRAINTS})
+
+# The values of drives at the base. A leg of fixed length is a D1 constraint whose base anchor the
+# drive moves.
+BY_SLIDER = Constraint(
+    name="D1",
+    base="line",
+    platform="point",
+    quantity="distance",
+    exchanged="",
+    segment=slider,
+    measure=joint_value,
+    row=slider_row,
+    undefined="the rod does not reach from the rail to the platform anchor",
+    source="docs/drives.md",
+    driven=True,
+    stalled="the rod is perpendicular to the rail",
+)
+BY_CRANK = Constraint(
+    name="D1",
+    base="line",
+    platform="point",
+    quantity="angle",
+    exchanged="",
+    segment=crank,
+    measure=joint_value,
+    row=driven_row,
+    undefined="crank and rod do not reach the platform anchor, or it is on the axis",
+    source="docs/drives.md",
+    driven=True,
+    stalled="the rod is in the plane of the axis and the crank",
+)

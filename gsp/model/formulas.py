@@ -50,6 +50,8 @@ class Placement(NamedTuple):
         was left out.
     scale : scalar [length]
         |p| + |b| + |a|, the size of the terms of `d`.
+    drive : scalars, or none for a leg that is not driven at the base
+        See `gsp.model.rods`.
     """
 
     d: Vector
@@ -57,6 +59,7 @@ class Placement(NamedTuple):
     s: Vector
     t: Vector
     scale: Scalar
+    drive: Vector = []  # noqa: RUF012 - never changed
 
 
 class Segment(NamedTuple):
@@ -78,6 +81,7 @@ class Segment(NamedTuple):
         t × s.
     sine : scalar, or none for a segment from or to a point
         |t × s|.
+    driven : gsp.model.rods.Driven, or none for a leg that is not driven at the base
     """
 
     s: Vector
@@ -88,6 +92,7 @@ class Segment(NamedTuple):
     defined: Any
     normal: Vector = []  # noqa: RUF012 - never changed
     sine: Scalar = None
+    driven: Any = None
 
 
 class PassiveRate(NamedTuple):

@@ -1,9 +1,12 @@
-"""The legs SPS, SPC, CPS and CCC: joints, constraints, and rates of their passive joints."""
+"""The legs SPS, SPC, CPS and CCC: joints, constraints, and rates of their passive joints.
+
+The legs PSS and RSS are driven at the base, and have the dimensions of their drive.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from types import MappingProxyType
 from typing import Any, Literal
@@ -11,12 +14,14 @@ from typing import Any, Literal
 from gsp.checks import is_a, is_iterable, reading
 from gsp.errors import InvalidDesign, brief, expected
 from gsp.geometry.scalars import Scalar
-from gsp.model.constraints import CONSTRAINT, Constraint
+from gsp.model.constraints import BY_CRANK, BY_SLIDER, CONSTRAINT, Constraint
+from gsp.model.drives import Crank, Drive, Slider
 from gsp.model.formulas import PassiveRate, Placement, Segment, ccc, ccc_angle, cps, spc, sps
+from gsp.model.rods import driven_rates
 
 # Texts that name a leg: one for each constraint, more are a mistake.
 MOST_WORDS = 4
-FREEDOMS = MappingProxyType({"S": 3, "P": 1, "C": 2})
+FREEDOMS = MappingProxyType({"S": 3, "P": 1, "C": 2, "R": 1})
 
 
 @dataclass(frozen=True)
@@ -25,18 +30,18 @@ class Joint:
 
     Attributes
     ----------
-    kind : "S", "P" or "C"
-        Spherical, prismatic or cylindrical.
+    kind : "S", "P", "C" or "R"
+        Spherical, prismatic, cylindrical or revolute.
     active : "", "slide", "turn" or "slide and turn"
         Which freedoms have an actuator.
     """
 
-    kind: Literal["S", "P", "C"]
+    kind: Literal["S", "P", "C", "R"]
     active: Literal["", "slide", "turn", "slide and turn"] = ""
 
     @property
     def freedoms(self) -> int:
-        """Number of freedoms: 3 for S, 2 for C, 1 for P."""
+        """Number of freedoms: 3 for S, 2 for C, 1 for P and R."""
         return FREEDOMS[self.kind]
 
     @property
@@ -55,9 +60,10 @@ class Leg:
     Attributes
     ----------
     name : str
-        Its constraints as text: "D1", "D2", "D3", "D4", "A1" or "D4 A1".
+        Its constraints as text: "D1", "D2", "D3", "D4", "A1" or "D4 A1"; the chain of a driven leg.
     chain : str
-        Its joints from base to platform: "SPS", "SPC", "CPS" or "CCC".
+        Its joints from base to platform: "SPS", "SPC", "CPS" or "CCC"; "PSS" with a slider, "RSS"
+        with a crank.
     constraints : tuple of Constraint
         In row order.
     joints : tuple of Joint
@@ -66,6 +72,8 @@ class Leg:
         Freedoms that move neither platform nor actuator (the turn of an SPS leg about itself).
     passive : Segment, characteristic length -> list of PassiveRate
         Rows that give the rates of the passive joints from a twist.
+    drive : Slider, Crank or None
+        What drives a leg of fixed length at the base.
     """
 
     name: str
@@ -74,10 +82,11 @@ class Leg:
     joints: tuple[Joint, Joint, Joint]
     idle: int
     passive: Callable[[Segment, Scalar], list[PassiveRate]]
+    drive: Drive | None = None
 
     def __reduce__(self) -> tuple[object, ...]:
         # In another process it is that process's leg of the same name, so that `is` still holds.
-        return check_leg, (self.name,)
+        return check_leg, (self.name if self.drive is None else self.drive,)
 
     @property
     def segment(self) -> Callable[[Placement], Segment]:
@@ -171,9 +180,33 @@ LEGS = (
 
 LEG = MappingProxyType({leg.name: leg for leg in LEGS})
 
+# Legs of fixed length that are driven at the base; a design has them with the numbers of a drive.
+_R = Joint("R", "turn")
+DRIVEN_LEGS = (
+    Leg(
+        name="PSS",
+        chain="PSS",
+        constraints=(BY_SLIDER,),
+        joints=(_P, _S, _S),
+        idle=1,
+        passive=driven_rates,
+    ),
+    Leg(
+        name="RSS",
+        chain="RSS",
+        constraints=(BY_CRANK,),
+        joints=(_R, _S, _S),
+        idle=1,
+        passive=driven_rates,
+    ),
+)
+DRIVEN_LEG: MappingProxyType[type[Drive], Leg] = MappingProxyType(
+    dict(zip((Slider, Crank), DRIVEN_LEGS, strict=True))
+)
 
-def check_leg(text: str | Leg | Iterable[str], where: str = "leg") -> Leg:
-    """Return a leg as it is, or that with the named constraint(s).
+
+def check_leg(text: str | Leg | Drive | Iterable[str], where: str = "leg") -> Leg:
+    """Return a leg as it is, that with a drive, or that with the named constraint(s).
 
     "A1 D4" and ("D4", "A1") are accepted too.
 
@@ -183,9 +216,13 @@ def check_leg(text: str | Leg | Iterable[str], where: str = "leg") -> Leg:
         If no leg has exactly these constraints.
     """
     if is_a(text, Leg):
+        if text.drive is None and text in DRIVEN_LEGS:
+            raise InvalidDesign(expected(where, "the numbers of a drive", f"{text.name} alone"))
         return text
     if type(text) is str and text in LEG:  # by far the most calls
         return LEG[text]
+    if is_a(text, Slider | Crank):
+        return replace(DRIVEN_LEG[type(text)], drive=text)
     wanted = "one of " + ", ".join(map(repr, LEG))
     words: tuple[Any, ...] = (text,)
     if is_iterable(text) and not isinstance(text, str | bytes):

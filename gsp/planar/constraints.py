@@ -74,6 +74,11 @@ class PlanarConstraint:
         return "d" if self.quantity == "distance" else "theta"
 
     @property
+    def signed(self) -> bool:
+        """Whether its value may be negative: angles."""
+        return self.quantity == "angle"
+
+    @property
     def constraints(self) -> tuple[PlanarConstraint]:
         """The constraints of the leg: this one."""
         return (self,)

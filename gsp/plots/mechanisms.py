@@ -13,28 +13,26 @@ from gsp.figures import style
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
+from gsp.model.legs import DRIVEN_LEGS
 from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import body, ellipsoid, enclose, frame
 from gsp.plots.common.labels import SpaceNote, write_in_space
+from gsp.plots.common.legs import draw_leg
 from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, space_or_new, title_text
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from mpl_toolkits.mplot3d import Axes3D
 
-# Lengths as shares of the size of the drawing: how far a line is drawn beyond what lies on it,
-# the length of a cylinder, that of the axes of a frame, and points that are drawn as one.
-LINE_EXTENSION, CYLINDER_LENGTH, AXES_LENGTH, SAME_POINT = 0.12, 0.07, 0.2, 0.01
-# How far from the foot a line is drawn toward its anchor, in sizes of the mechanism: an anchor may
-# be anywhere on its line.
-MOST_OF_LINE = 0.5
+# Lengths as shares of the size of the drawing: that of the axes of a frame, and points that are
+# drawn as one.
+AXES_LENGTH, SAME_POINT = 0.2, 0.01
 # Distance, in sizes of the mechanism, beyond which a frame is not drawn, as the mechanism would be
 # too small.
 FAR_FRAME_SIZES = 3.0
-# Places of the actuated joint and of the number of a leg, as shares from base to platform; of the
-# number the preferred first.
-ACTUATED, NUMBER_PLACES = 0.55, (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
+# Places of the number of a leg, as shares from base to platform, the preferred first.
+NUMBER_PLACES = (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
 
 
 def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None) -> Axes3D:
@@ -42,7 +40,8 @@ def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None
 
     Base and platform are the convex hulls of their joints. Legs are numbered, coloured by their
     constraints, and drawn from the foot on the base to the foot on the platform; a ball is a
-    spherical joint, a bar on a dashed line a cylindrical one, a square a prismatic one. The
+    spherical joint, a bar on a dashed line a cylindrical one, a square a prismatic one. Of a leg
+    that is driven at the base the rod is drawn, and the rail or the axis with the crank. The
     operation ellipsoid is drawn if the design has one. A leg that is undefined at the pose is left
     out, and the title names it; so is a frame whose origin is farther than three sizes of the
     mechanism from it.
@@ -95,7 +94,8 @@ def extent(posture: Posture) -> tuple[Array, float]:
 
     The size [length] is never 0.
     """
-    points = np.concatenate(_feet(posture))
+    bottoms, tops = _feet(posture)
+    points = np.concatenate((bottoms, tops, _base_corners(posture, bottoms)))
     if posture.design.ellipsoid is not None:
         centre, axes = _ellipsoid(posture)
         points = np.concatenate((points, centre + norm(axes) * np.array([[-1.0], [1.0]])))
@@ -120,10 +120,10 @@ def draw_parts(ax: Axes3D, posture: Posture, size: float) -> Array:
     bottoms, tops = _feet(posture)
     if posture.design.ellipsoid is not None:
         ellipsoid(ax, *_ellipsoid(posture), VERMILION)
-    body(ax, bottoms, GREY, size)
+    body(ax, _base_corners(posture, bottoms), GREY, size)
     body(ax, tops, BLUE, size)
     ends = zip(bottoms, tops, strict=True)
-    return np.concatenate([_leg(ax, posture, i, *feet, size) for i, feet in enumerate(ends)])
+    return np.concatenate([draw_leg(ax, posture, i, *feet, size) for i, feet in enumerate(ends)])
 
 
 def _ellipsoid(posture: Posture) -> tuple[Array, Array]:
@@ -142,6 +142,12 @@ def _feet(posture: Posture) -> tuple[Array, Array]:
         np.where(np.isnan(bottoms), posture.design.base_points, bottoms),
         np.where(np.isnan(tops), anchors, tops),
     )
+
+
+def _base_corners(posture: Posture, bottoms: Array) -> Array:
+    """Return the feet of the legs on the base, (n, 3); base points where a drive moves the foot."""
+    moved = np.array([drive is not None for drive in posture.design.drives])
+    return np.where(moved[:, None], posture.design.base_points, bottoms)
 
 
 def _frames(
@@ -175,55 +181,6 @@ def _frames(
         notes += frame(ax, origin, rotation, length, name, side)
         tips.append(origin + length * rotation.T)
     return np.concatenate(tips), missing, notes
-
-
-def _leg(ax: Axes3D, posture: Posture, i: int, bottom: Array, top: Array, size: float) -> Array:
-    """Draw one leg with its joints, and return the ends of the lines that it slides on."""
-    design, lines = posture.design, posture.lines
-    kind = design.legs[i]
-    if np.isnan(posture.segments.platform_feet[i]).any():
-        return np.empty((0, 3))
-    colour = LEGS[kind.name]
-    ends = []
-    for slides, foot, anchor, direction in (
-        (kind.base_line, bottom, design.base_points[i], lines.s[i]),
-        (kind.platform_line, top, posture.pose.position + lines.arm[i], lines.t[i]),
-    ):
-        if slides:
-            ends.append(_cylinder(ax, anchor, foot, direction, colour, size))
-        else:
-            ax.scatter(*foot, s=34, color=colour, edgecolor="white", linewidth=0.8, zorder=5)
-    _rod(ax, bottom, top, colour, prismatic=kind.joints[1].kind == "P", size=size)
-    return np.concatenate(ends) if ends else np.empty((0, 3))
-
-
-def _rod(
-    ax: Axes3D, bottom: Array, top: Array, colour: str, *, prismatic: bool, size: float
-) -> None:
-    """Draw a leg: a thin rod that moves in a thick one, and the actuated joint between them."""
-    middle = bottom + ACTUATED * (top - bottom)
-    ax.plot(*np.stack((bottom, top)).T, color=colour, linewidth=2.0, solid_capstyle="round")
-    ax.plot(*np.stack((bottom, middle)).T, color=colour, linewidth=4.2, solid_capstyle="round")
-    if prismatic:
-        ax.scatter(*middle, s=30, marker="s", color=colour, edgecolor="white", linewidth=0.8)
-        return
-    length = float(norm(top - bottom))
-    if length > 0.0:
-        half = min(0.5 * CYLINDER_LENGTH * size / length, 0.2) * (top - bottom)
-        ax.plot(*np.stack((middle - half, middle + half)).T, color=colour, linewidth=7.0)
-
-
-def _cylinder(
-    ax: Axes3D, anchor: Array, foot: Array, direction: Array, colour: str, size: float
-) -> Array:
-    """Draw a cylindrical joint on its line through anchor and foot; return the line's ends."""
-    most = MOST_OF_LINE * size
-    places = np.sort(np.clip([(anchor - foot) @ direction, 0.0], -most, most))
-    ends = foot + (places + LINE_EXTENSION * size * np.array([-1.0, 1.0]))[:, None] * direction
-    ax.plot(*ends.T, color=colour, linewidth=0.9, linestyle=(0, (4, 3)))
-    bar = foot + CYLINDER_LENGTH * size * np.array([[-0.5], [0.5]]) * direction
-    ax.plot(*bar.T, color=colour, linewidth=7.0, solid_capstyle="butt")
-    return np.asarray(ends)
 
 
 def _numbers(posture: Posture, size: float) -> list[SpaceNote]:
@@ -267,15 +224,23 @@ def legend_entries(design: Design) -> list[Artist]:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
+    names = {leg.name for leg in design.legs}
     handles: list[Artist] = [
-        Line2D([], [], color=LEGS[k.name], linewidth=3.5, label=f"{k.name} ({k.chain})")
-        for k in KINDS
-        if k in design.legs
+        Line2D(
+            [],
+            [],
+            color=LEGS[k.name],
+            linewidth=3.5,
+            label=k.name if k.name == k.chain else f"{k.name} ({k.chain})",
+        )
+        for k in (*KINDS, *DRIVEN_LEGS)
+        if k.name in names
     ]
     looks = {
         "S": {"linestyle": "", "marker": "o"},
         "P": {"linestyle": "", "marker": "s", "markersize": 5},
         "C": {"linestyle": (0, (4, 3)), "linewidth": 0.9, "marker": "_", "markeredgewidth": 5},
+        "R": {"linewidth": 4.2, "marker": ""},
     }
     kinds = {joint.kind for leg in design.legs for joint in leg.joints}
     handles += [

@@ -11,7 +11,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes import AssemblyModes
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.plots.common.bodies import body
 from gsp.plots.common.style import (
     BLUE,
@@ -68,7 +68,7 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
     >>> len(gsp.plots.assembly_modes(lift, modes).axes)
     8
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_type("modes", modes, AssemblyModes)
     if len(modes.side) == 0:
         raise InvalidInput(expected("modes", "at least one real mode", f"none ({modes.status})"))

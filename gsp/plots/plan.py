@@ -12,7 +12,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import hull
 from gsp.plots.common.labels import covered, drawn_places, free_places
@@ -81,7 +81,7 @@ def plan_view(
     >>> base, platform = gsp.families.lee.joint_names("lee-3-3")
     >>> axes = plan_view(design, gsp.Pose([0, 0, 1]), base_names=base, platform_names=platform)
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     pose = design.home if pose is None else pose
     if pose is None:
         raise InvalidInput(expected("pose", "a single pose", "none, and no home pose"))

@@ -14,7 +14,7 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, problem_of
 from gsp.proof.extremes import halved
@@ -114,7 +114,7 @@ def largest_around(
 
     *Source: ours; see `docs/proofs.md`.*
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     wide = check_around(pose, half_widths)
     shape = arguments.one_of(*get_args(Shape))("shape", shape)
     if limits is not None:

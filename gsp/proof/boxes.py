@@ -15,7 +15,7 @@ from gsp.geometry.copies import changeable
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, norm
 from gsp.limits import Limits
-from gsp.model.design import Design, toml_from_design
+from gsp.model.design import Design, check_undriven, toml_from_design
 from gsp.progress import Progress, meter
 from gsp.proof.branching.claims import claims_of, value_at, violation
 from gsp.proof.branching.enclosure import enclose
@@ -134,7 +134,7 @@ def search_box(
     resume: Certificate | None = None,
 ) -> tuple[Certificate, bool]:
     """Return the certificate of `certify`, and whether an interrupt ended its search."""
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_box(box)
     if limits is not None:
         check_type("limits", limits, Limits)

@@ -15,7 +15,7 @@ from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import nearest_rotations, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.indices.motion import instantaneous_motion
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.proof.around import DISTANCE_INWARD
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, problem_of
@@ -114,7 +114,7 @@ def singularity_distance(
 
     *Source: ours; see `docs/proofs.md`.*
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_type("pose", pose, Pose)
     scale = arguments.size("length", length)
     share = check_positive("tolerance", tolerance)

@@ -9,7 +9,7 @@ from typing import Any, NoReturn, Self
 
 import numpy as np
 
-from gsp.checks import check_integer, check_positive, check_type, is_a, plain_text
+from gsp.checks import check_integer, check_positive, is_a, plain_text
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
@@ -17,7 +17,7 @@ from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
 from gsp.indices.table import MAXIMUM_SHARES
 from gsp.limits import Limits
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.progress import Report
 from gsp.proof.boxes import check_box
 from gsp.proof.branching.claims import value_at
@@ -201,7 +201,7 @@ def bounds(
 
     *Source: ours; see `docs/proofs.md`.*
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_box(box)
     share = check_positive("tolerance", tolerance)
     most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)

@@ -15,7 +15,7 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.proof.boxes import LARGEST_ANGLE, search_box
 from gsp.proof.certificate import Certificate
 from gsp.proof.tolerances import Tolerances
@@ -116,7 +116,7 @@ def largest_box(
 
     *Source: ours.*
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     wide = check_around(pose, half_widths)
     share = check_positive("tolerance", tolerance)
     most = BOXES_PER_PROOF if budget is None else budget

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp import determinant
-from gsp.checks import check_integer, check_positive, check_type
+from gsp.checks import check_integer, check_positive
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.domain import Domain, Neighbourhood, check_domain
 from gsp.errors import InvalidInput, expected
@@ -16,7 +16,7 @@ from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import nearest_rotations
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.limits import Limits
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.progress import Progress, meter
 from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
 from gsp.proof.extremes import Keep, extreme
@@ -122,7 +122,7 @@ def certify_maximum(
 
     *Source: ours; see `docs/proofs.md`.*
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     share = check_positive("tolerance", tolerance)
     if share >= 1.0:
         raise InvalidInput(expected("tolerance", "a number below 1", share))

@@ -12,7 +12,7 @@ from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, frozen
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class Tolerances(ReadOnly):
                 )
             object.__setattr__(self, field.name, frozen(value) if value.ndim else float(value))
 
-    @arguments.validated(design=arguments.kind(Design))
+    @arguments.validated(design=check_undriven)
     def of_legs(self, design: Design) -> Array:
         """Return the tolerances of the anchors and lines of each leg.
 
@@ -79,7 +79,7 @@ class Tolerances(ReadOnly):
         names = ("base_points", "platform_points", "base_directions", "platform_directions")
         return np.stack([self._each(name, design.n_legs) for name in names], axis=1)
 
-    @arguments.validated(design=arguments.kind(Design))
+    @arguments.validated(design=check_undriven)
     def of_joints(self, design: Design) -> Array:
         """Return the tolerances of the zero points of the joints.
 

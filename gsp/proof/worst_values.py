@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gsp.checks import check_integer, check_items, check_positive, check_type, is_a
+from gsp.checks import check_integer, check_items, check_positive, is_a
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.scheduling import run_all
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox
 from gsp.indices import INDICES
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.progress import Progress, meter
 from gsp.proof.boxes import check_box
 from gsp.proof.extremes import BOXES_PER_SEARCH, ENDS_TOLERANCE, End, bounded_name, one_end
@@ -126,7 +126,7 @@ def worst(
     if not given:
         raise InvalidInput(expected("designs", wanted, "none"))
     for i, design in enumerate(given):
-        check_type(f"designs[{i}]", design, Design)
+        check_undriven(f"designs[{i}]", design)
     check_box(box)
     name, share = bounded_name(index), check_positive("tolerance", tolerance)
     most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)

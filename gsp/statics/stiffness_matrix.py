@@ -15,6 +15,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.posture import Posture
+from gsp.model.posture.assembled import finite_rows
 from gsp.model.posture.derivatives import rows_and_derivatives
 from gsp.model.posture.evaluated import arm_of_centre
 
@@ -41,8 +42,8 @@ def stiffness(
     Returns
     -------
     (..., 6, 6) array [force/unit, force, force · unit]
-        About the platform origin, in base axes. NaN where the posture is undefined, or with
-        `preload` singular.
+        About the platform origin, in base axes. NaN where the posture is undefined, a drive at the
+        base is singular, or with `preload` the posture is.
 
     Raises
     ------
@@ -141,7 +142,7 @@ def weighted_inverse(posture: Posture, weights: Array) -> Array:
 
 
 def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> Array:
-    jacobian = posture.jacobian
+    jacobian = finite_rows(posture, posture.jacobian)
     result = np.swapaxes(jacobian, -1, -2) @ (springs[..., None] * jacobian)
     if preload is not None:
         result = result - _change_by_preload(posture, preload)

@@ -16,7 +16,7 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.posture.derivatives import moving_parts
 
 # Acceleration of free fall [m/s²], along −z.
@@ -175,7 +175,7 @@ def gravity_wrench(
     >>> gravity_wrench(d, d.home, Masses(platform=2.0)).round(9) + 0.0
     array([  0.  ,   0.  , -19.62,   0.  ,   0.  ,   0.  ])
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_type("pose", pose, Pose)
     check_type("masses", masses, Masses, "a gsp.statics.Masses")
     down, legs = _vector("gravity", gravity), _of_legs(masses, design.n_legs)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gsp import arguments
-from gsp.checks import check_integer, check_items, check_memory, check_type, reading
+from gsp.checks import check_integer, check_items, check_memory, reading
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.rotations import rotation_from_angles
@@ -18,7 +18,7 @@ from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.progress import Progress, meter
 from gsp.workspace.boundary.mapping import RAY_BYTES
 from gsp.workspace.boundary.orientations import feasible_orientations
@@ -268,7 +268,7 @@ def symmetry(design: Design) -> int:
     >>> symmetry(gsp.catalogue.design("workspace-6-3"))
     3
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     return next((m for m in range(MOST_FOLDS, 1, -1) if _repeats(design, m)), 1)
 
 

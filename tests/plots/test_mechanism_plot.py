@@ -11,6 +11,7 @@ import gsp
 from gsp.catalogue import design, design_names, instantiate, mechanisms
 from gsp.errors import InvalidInput
 from gsp.families import lee
+from gsp.model.legs import DRIVEN_LEGS
 from gsp.model.legs import LEGS as KINDS
 from gsp.plots import mechanism
 from gsp.plots.common.style import LEGS
@@ -58,7 +59,7 @@ def test_legend_names_the_legs_that_are_there():
         "D1 (SPS)", "D2 (SPC)", "D3 (CPS)", "A1 (CCC)", "D4 A1 (CCC)", "S joint",
         "P joint", "C joint", "base", "platform",
     ]  # fmt: skip
-    assert set(LEGS) == {kind.name for kind in KINDS}
+    assert set(LEGS) == {kind.name for kind in (*KINDS, *DRIVEN_LEGS)}
     assert len(set(LEGS.values())) == len(LEGS)
 
 
@@ -153,7 +154,7 @@ def test_legs_and_numbers_are_in_the_picture_and_bodies_pass_through_their_joint
     ax = mechanism(AWKWARD[name])
     assert not overlaps(ax)
     every_leg_and_number_is_shown(ax, AWKWARD[name].n_legs)
-    bodies_pass_through_their_joints(ax)
+    bodies_pass_through_their_joints(ax, AWKWARD[name])
 
 
 def every_leg_and_number_is_shown(ax, n_legs):
@@ -166,8 +167,10 @@ def every_leg_and_number_is_shown(ax, n_legs):
     assert sorted(map(int, numbers.split(", "))) == list(range(1, n_legs + 1))
 
 
-def bodies_pass_through_their_joints(ax):
+def bodies_pass_through_their_joints(ax, design):
     feet = np.array(rods(ax)).swapaxes(0, 1)
+    if design.driven:  # the tips of rods are on carriages and cranks
+        feet[0] = design.base_points
     extended = [side for side in feet if np.ptp(side, axis=0).max() > 1e-9 * np.ptp(feet)]
     bodies = hulls(ax)
     assert len(bodies) == len(extended)
@@ -261,3 +264,20 @@ def test_an_anchor_far_away_on_its_line_leaves_the_mechanism_its_size(side):
     # Legs and feet are the same.
     for one, other in zip(rods(far), rods(near), strict=True):
         np.testing.assert_allclose(one, other, atol=1e-9 * 1e4 * DESIGN.rms_radius)
+
+
+@pytest.mark.parametrize("name", ["lane-rotary", "lane-modified-paradex"])
+def test_rods_rails_and_cranks_are_drawn(name):
+    drawn = design(name)
+    ax = mechanism(drawn)
+    feet = drawn.at(drawn.home).segments
+    for (tip, top), low, high in zip(rods(ax), feet.base_feet, feet.platform_feet, strict=True):
+        np.testing.assert_allclose([tip, top], [low, high], rtol=0, atol=1e-12)
+    dashed = [np.array(x.get_data_3d()).T for x in ax.lines if x.get_linestyle() == "--"]
+    assert len(dashed) == 6
+    for (low, high), s in zip(dashed, drawn.base_directions, strict=True):
+        assert np.linalg.norm(np.cross(high - low, s)) < 1e-9
+    cranks = [np.array(x.get_data_3d()).T for x in ax.lines if x.get_linewidth() == 4.2]
+    arms = [np.linalg.norm(high - low) for low, high in cranks]
+    expected = [1.25] * 6 if name == "lane-rotary" else []
+    np.testing.assert_allclose(arms, expected, rtol=1e-12)

@@ -19,6 +19,7 @@ COUNTS = {
             "CDSL2006",
             "Cheers2021",
             "Dehaeze2020",
+            "LaneMachinekit",
             "LinuxCNC",
             "MCL745",
             "Martyushev2025",

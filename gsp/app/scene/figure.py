@@ -22,7 +22,7 @@ from gsp.checks import check_installed, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.files.writing import write_text
 from gsp.geometry.pose import Pose
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 WEB = Path(__file__).parent / "web"
 # Scripts of the scene by the names under which they import each other.
@@ -105,7 +105,7 @@ def figure(design: Design, pose: Pose | None = None) -> SceneFigure:
     >>> figure(gsp.catalogue.design("lee-2000-3-3"))
     SceneFigure('lee-2000-3-3: platform at 0, 0, 1')
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     if pose is not None:
         check_type("pose", pose, Pose)
         if pose.shape:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from types import MappingProxyType
 
 from gsp.catalogue import design as published
@@ -13,7 +13,7 @@ from gsp.catalogue.placement import TEMPLATE
 from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, expected
 from gsp.families.lee.platforms import KINDS
 from gsp.families.texts import best_placed, best_placed_by_kinds, design_of_family, is_family
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.design.designs import design_from_toml
 
 # The design of figures 40 and 41 of the dissertation opens with these.
@@ -58,7 +58,13 @@ class Half:
 
 def names() -> tuple[str, ...]:
     """Return the names that can be chosen: published designs, then the 195 mechanisms."""
-    return (*design_names(), *(m.name for m in mechanisms()))
+    return (*published_names(), *(m.name for m in mechanisms()))
+
+
+@cache
+def published_names() -> tuple[str, ...]:
+    """Return the names of the published designs without legs that are driven at the base."""
+    return tuple(name for name in design_names() if not published(name).driven)
 
 
 @lru_cache(maxsize=512)
@@ -72,7 +78,7 @@ def named(name: str, template: str = TEMPLATE) -> Design:
     UnknownDesign, UnknownMechanism, InvalidDesign
     """
     if name in design_names():
-        return published(name)
+        return check_undriven("design", published(name))
     if is_family(name):
         return design_of_family(name)
     if name not in names():
@@ -88,8 +94,8 @@ def named_template(name: str) -> Design:
     UnknownDesign
     """
     if name not in design_names():
-        raise UnknownDesign("template", name, design_names())
-    return published(name)
+        raise UnknownDesign("template", name, published_names())
+    return check_undriven("template", published(name))
 
 
 def from_file(text: str, origin: str = "design file") -> Design:
@@ -102,7 +108,7 @@ def from_file(text: str, origin: str = "design file") -> Design:
     if len(text) > LARGEST_FILE:
         got = f"{len(text)} letters"
         raise InvalidInput(expected(origin, f"at most {LARGEST_FILE} letters", got))
-    design = design_from_toml(text, origin)
+    design = check_undriven(origin, design_from_toml(text, origin))
     if design.n_legs > MOST_UPLOADED_LEGS:
         raise InvalidDesign(expected(origin, f"at most {MOST_UPLOADED_LEGS} legs", design.n_legs))
     return design

@@ -11,7 +11,7 @@ from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 BASE, PLATFORM = "base", "platform"
 FRAMES = (BASE, PLATFORM)
@@ -89,6 +89,7 @@ def started(design: Design, pose: Pose | None = None) -> Session:
     >>> bool((start.pose.position == start.design.home.position).all()), start.frame
     (True, 'base')
     """
+    check_undriven("design", design)
     if pose is None:
         pose = design.home
     if pose is None:

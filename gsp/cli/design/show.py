@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -33,6 +34,7 @@ from gsp.geometry.pose.texts import pose_text
 from gsp.indices import index_names
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design
+from gsp.model.drives import Crank
 from gsp.model.legs import Leg
 from gsp.model.mechanism import Mechanism
 from gsp.model.posture import Posture
@@ -138,7 +140,7 @@ def _show_mechanism(mechanism: Mechanism) -> None:
     say(f"Symmetric  {'yes' if mechanism.symmetric else 'no'}")
     say(f"Base and platform exchanged: {other}")
     _legs_table(mechanism.legs)
-    _equations_table(mechanism)
+    _equations_table(mechanism.constraints)
 
 
 def _show_design(design: Design) -> None:
@@ -149,16 +151,35 @@ def _show_design(design: Design) -> None:
         say(f"Length     {design.characteristic_length:g} {design.unit}".rstrip())
     _legs_table(design.legs)
     _anchors_table(design)
-    _equations_table(design.mechanism)
+    _drives_table(design)
+    _equations_table(row.constraint.name for row in design.rows if not row.constraint.driven)
 
 
 def _legs_table(legs: tuple[Leg, ...]) -> None:
     table = plain_table("leg", "constraints", "chain", "joints", "actuated", right=("leg",))
     for i, leg in enumerate(legs, 1):
         names = ", ".join(f"{c.symbol}{i}" for c in leg.constraints)
-        table.add_row(str(i), leg.name, leg.chain, " ".join(map(str, leg.joints)), names)
+        table.add_row(str(i), _constraints(leg), leg.chain, " ".join(map(str, leg.joints)), names)
     say("")
     show_table(table)
+
+
+def _constraints(leg: Leg) -> str:
+    return " ".join(constraint.name for constraint in leg.constraints)
+
+
+def _drives_table(design: Design) -> None:
+    """Print the drives at the base: rails and axes are the base lines of the legs."""
+    if not design.driven:
+        return
+    table = plain_table("leg", "drive", "rod", "branch", "arm", right=("leg", "rod", "branch"))
+    for i, drive in enumerate(design.drives, 1):
+        if drive is not None:
+            arm = _vector(drive.arm) if isinstance(drive, Crank) else ""
+            table.add_row(str(i), drive.kind, f"{drive.rod:.6g}", f"{drive.branch:+d}", arm)
+    say("")
+    show_table(table)
+    say("The base line of a driven leg is the rail of its slider or the axis of its crank.", "dim")
 
 
 def _anchors_table(design: Design) -> None:
@@ -181,9 +202,12 @@ def _vector(vector: object) -> str:
     return "" if values[0] != values[0] else "  ".join(f"{x:8.6g}" for x in values)
 
 
-def _equations_table(mechanism: Mechanism) -> None:
+def _equations_table(constraints: Iterable[str]) -> None:
+    names = list(dict.fromkeys(constraints))
+    if not names:
+        return
     table = plain_table("constraint", "value", "row", "source")
-    for name in dict.fromkeys(mechanism.constraints):
+    for name in names:
         equation = EQUATIONS[name]
         table.add_row(name, equation.value, equation.text, CONSTRAINT[name].source)
     say("")

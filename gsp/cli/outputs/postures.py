@@ -49,9 +49,11 @@ def in_degrees(angle: float) -> str:
 
 
 def warn_of(posture: Posture, where: str = "") -> None:
-    """Print the joints of a posture that are undefined or beyond their strokes, and where."""
+    """Print the joints of a posture that are undefined, singular or beyond strokes, and where."""
     for element in posture.undefined:
         warn(f"{where}{element.joint} is undefined: {element.reason}")
+    for drive in posture.stalled:
+        warn(f"{where}the drive {drive.joint} is singular: {drive.reason}")
     beyond = [
         name
         for name, mark in zip(posture.joint_names, strokes(posture), strict=True)

@@ -8,13 +8,11 @@ from gsp import arguments
 from gsp.geometry.matrices import log_and_inverse
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.posture.derivatives import rows_and_derivatives
 
 
-@arguments.validated(
-    design=arguments.kind(Design, "a gsp.Design"), pose=arguments.kind(Pose, "a gsp.Pose")
-)
+@arguments.validated(design=check_undriven, pose=arguments.kind(Pose, "a gsp.Pose"))
 def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
     """Return log |det J| and its gradient along the six unit twists at the platform origin.
 

@@ -15,7 +15,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose.intervals import sample_points
 from gsp.geometry.vectors import EPS, Array, frozen
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.dimensions import ANCHORS, Dimensions
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class Deviations(ReadOnly):
             object.__setattr__(self, field.name, frozen(value) if value.ndim else float(value))
 
     @arguments.validated(
-        design=arguments.kind(Design, "a gsp.Design"),
+        design=check_undriven,
         n=arguments.integer(1),
         seed=arguments.integer(0),
     )

@@ -25,7 +25,7 @@ from gsp.exploration.volumes import volumes
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.dimensions import ANCHORS, Dimensions
 from gsp.progress import Progress
 from gsp.proof.extremes import ENDS_TOLERANCE
@@ -62,7 +62,7 @@ class IndexTolerance(ReadOnly):
 
 
 @arguments.validated(
-    design=arguments.kind(Design, "a gsp.Design"),
+    design=check_undriven,
     task=arguments.kind(Task, "a gsp.Task"),
     deviations=arguments.kind(Deviations, "a gsp.exploration.Deviations"),
     samples=arguments.integer(2),

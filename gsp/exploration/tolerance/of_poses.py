@@ -23,7 +23,7 @@ from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.kinematics.forward_solution import forward
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.model.dimensions import Dimensions
 from gsp.progress import Progress, Report, meter
 from gsp.statics.accuracy import pose_errors
@@ -128,7 +128,7 @@ class PoseTolerance(ReadOnly):
 
 
 @arguments.validated(
-    design=arguments.kind(Design, "a gsp.Design"),
+    design=check_undriven,
     pose=arguments.kind(Pose, "a gsp.Pose"),
     deviations=arguments.kind(Deviations, "a gsp.exploration.Deviations"),
     samples=arguments.integer(2),

@@ -20,7 +20,7 @@ from gsp.kinematics.modes.equations import order_of, parameters_from, rotations
 from gsp.kinematics.modes.reach import contradict
 from gsp.kinematics.modes.starts import start_of
 from gsp.kinematics.newton.centred import Centred, centred
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 
 # Distances in sizes of the design beyond which paths are not followed.
 LARGEST_DISTANCE_SIZES = 1e6
@@ -131,7 +131,7 @@ def assembly_modes(design: Design, joints: ArrayLike, *, certify: bool = False) 
     >>> modes.status, modes.n_complex, len(modes.residual)
     ('found', 28, 8)
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     check_type("certify", certify, bool, "True or False")
     target = _check(design, joints)
     system = centred(design)

@@ -148,18 +148,26 @@ class AnchoredDesign(ReadOnly, Generic[P]):
             "unit": check_unit("unit", unit),
             "name": check_line("name", name),
             "source": check_text("source", source),
-            "strokes": None if strokes is None else check_strokes(strokes, self.angular),
+            "strokes": None if strokes is None else check_strokes(strokes, self.signed),
             "characteristic_length": length,
             "ellipsoid": ellipsoid,
             "home": home,
         }
         for key, value in checked.items():
             object.__setattr__(self, key, value)
+        self._check_drives()
 
     @classmethod
     def _check_legs(cls, legs: Any) -> tuple[Any, ...]:
         """Return the kinds of the legs that are named, or raise InvalidDesign."""
         raise NotImplementedError
+
+    def _check_drives(self) -> None:
+        """Raise InvalidDesign for drives that do not fit their lines; the plane has none."""
+
+    def _scaled_legs(self, factor: float) -> tuple[Any, ...]:
+        """Return the legs with the lengths of their drives multiplied by a factor."""
+        return self.legs
 
     @kept_property
     def groups(self) -> tuple[Group, ...]:
@@ -190,6 +198,24 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         mask = np.array([row.constraint.quantity == "angle" for row in self.rows], dtype=bool)
         mask.flags.writeable = False
         return mask
+
+    @kept_property
+    def signed(self) -> Mask:
+        """Which actuators may have values below zero, shape (n,): angles, and drives at the base.
+
+        *Source: ours; docs/drives.md*
+        """
+        mask = np.array([row.constraint.signed for row in self.rows], dtype=bool)
+        mask.flags.writeable = False
+        return mask
+
+    @kept_property
+    def driven(self) -> bool:
+        """Whether some leg is driven at the base, by a slider or a crank.
+
+        *Source: docs/drives.md*
+        """
+        return any(getattr(leg, "drive", None) is not None for leg in self.legs)
 
     @property
     def cylindrical(self) -> bool:
@@ -278,6 +304,7 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         )
         units = np.where(self.angular, 1.0, k)[:, None]
         return self.replace(
+            legs=self._scaled_legs(k),
             base_points=self.base_points * k,
             platform_points=self.platform_points * k,
             strokes=None if strokes is None else strokes * units,
@@ -323,7 +350,7 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         )
 
     def exchanged(self) -> Self:
-        """Return the design with base and platform exchanged.
+        """Return the design with base and platform exchanged, of legs not driven at the base.
 
         Its distances at the inverse pose are those of this design at the pose, and so are the
         angles in space; the oriented angles in the plane change their sign.
@@ -332,8 +359,17 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         -------
         A design of the same kind. It has no operation ellipsoid, which is fixed to the platform.
 
+        Raises
+        ------
+        InvalidDesign
+            For legs that are driven at the base.
+
         *Source: docs/conventions.md, "What another description changes"*
         """
+        if any(not constraint.exchanged for _, constraint in self.rows):
+            raise InvalidDesign(
+                expected("exchanged", "legs that are not driven at the base", repr(self))
+            )
         return self.replace(
             legs=[leg.exchanged for leg in self.legs],
             base_points=self.platform_points,

@@ -86,14 +86,14 @@ def check_directions(
         return frozen(unit(np.where(extreme, chosen / size, chosen)))
 
 
-def check_strokes(value: ArrayLike | None, angular: Mask, what: str = "strokes") -> Array | None:
+def check_strokes(value: ArrayLike | None, signed: Mask, what: str = "strokes") -> Array | None:
     """Return least and greatest values of n actuators, (n, 2), or None where none has a limit.
 
     Parameters
     ----------
     value : (n, 2) array_like or None [length, rad]
-    angular : (n,) bool array
-        Which actuators are angles: no distance is negative.
+    signed : (n,) bool array
+        Which actuators may have negative values: angles and drives at the base.
     what : str
         The argument, for messages.
 
@@ -107,7 +107,7 @@ def check_strokes(value: ArrayLike | None, angular: Mask, what: str = "strokes")
     """
     if value is None:
         return None
-    n = len(angular)
+    n = len(signed)
     limits = bounded_array(what, value, (n, 2), finite=False)
     if limits.ndim != 2 or (limits[:, 0] > limits[:, 1]).any():
         wanted = f"shape ({n}, 2) with least ≤ greatest"
@@ -116,7 +116,7 @@ def check_strokes(value: ArrayLike | None, angular: Mask, what: str = "strokes")
     if without.size:
         wanted = "least < ∞ and greatest > −∞"
         raise InvalidDesign(expected(f"{what}[{without[0]}]", wanted, limits[without[0]].tolist()))
-    below = np.flatnonzero(~angular & below_zero(limits))
+    below = np.flatnonzero(~signed & below_zero(limits))
     if below.size:
         wanted = "bounds ≥ 0, as no distance is negative"
         raise InvalidDesign(expected(f"{what}[{below[0]}]", wanted, limits[below[0]].tolist()))

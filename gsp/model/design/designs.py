@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib import import_module
 from os import PathLike
@@ -20,7 +20,8 @@ from gsp.model.design.checks import check_legs
 from gsp.model.design.forms import SPATIAL, Form
 from gsp.model.design.frame import check_columns, columns_from_design, parameters_from_columns
 from gsp.model.design.toml import parameters_from_toml
-from gsp.model.legs import LEGS, Leg, check_leg
+from gsp.model.drives import Drive, check_line, scaled
+from gsp.model.legs import DRIVEN_LEGS, LEGS, Leg, check_leg
 from gsp.model.mechanism import Mechanism
 from gsp.model.posture.postures import Posture
 
@@ -40,20 +41,22 @@ class Design(AnchoredDesign[Pose]):
 
     Parameters
     ----------
-    legs : sequence of str or Leg
-        Per leg its constraint(s): "D1", "D2", "D3", "D4", "A1" or "D4 A1", or its record, such as
-        those of another design. Together at least six constraints; more make a redundant design.
+    legs : sequence of str, Slider, Crank or Leg
+        Per leg its constraint(s): "D1", "D2", "D3", "D4", "A1" or "D4 A1"; or what drives a leg of
+        fixed length at the base, a `gsp.Slider` or a `gsp.Crank`; or its record, such as those of
+        another design. Together at least six constraints; more make a redundant design.
     base_points, platform_points : (n_legs, 3) array_like [unit]
         a_i in base axes, b_i in platform axes.
     base_directions, platform_directions : (n_legs, 3) array_like or None [1]
-        s_i and t_i, normalised here. A row is ignored (NaN allowed) where the leg has no line.
+        s_i and t_i, normalised here. A row is ignored (NaN allowed) where the leg has no line. The
+        base line of a driven leg is the rail of its slider or the axis of its crank.
     unit : str
         The unit of length of all the numbers, for the record: "mm", "m" … Any name without spaces
         around it; "" for none. See docs/conventions.md.
     name, source : str
     strokes : (n, 2) array_like or None [unit, rad]
         Least and greatest value per actuator, in the order of `joint_names`; NaN for no limit.
-        Those of distances are ≥ 0.
+        Those of distances are ≥ 0, but for the travels of sliders.
     characteristic_length : float or None [unit]
         The length with which the source makes the Jacobian homogeneous.
     ellipsoid : Ellipsoid or None
@@ -64,7 +67,8 @@ class Design(AnchoredDesign[Pose]):
     Raises
     ------
     InvalidDesign
-        On an unknown leg, fewer than six constraints, or a missing or zero direction.
+        On an unknown leg, fewer than six constraints, a missing or zero direction, or the arm of a
+        crank along its axis.
     InvalidInput
         On wrong shapes or numbers that are not finite.
 
@@ -81,19 +85,38 @@ class Design(AnchoredDesign[Pose]):
 
     dimension: ClassVar[int] = 3
     form: ClassVar[Form] = SPATIAL
-    kinds: ClassVar[tuple[Any, ...]] = LEGS
+    kinds: ClassVar[tuple[Any, ...]] = (*LEGS, *DRIVEN_LEGS)
     pose_type: ClassVar[type] = Pose
 
     legs: tuple[Leg, ...]
 
     @classmethod
-    def _check_legs(cls, legs: Iterable[str | Leg | Iterable[str]]) -> tuple[Leg, ...]:
+    def _check_legs(cls, legs: Iterable[str | Leg | Drive | Iterable[str]]) -> tuple[Leg, ...]:
         given = check_legs(legs)
         kinds = tuple(check_leg(leg, f"legs[{i}]") for i, leg in enumerate(given))
         number = sum(len(leg.constraints) for leg in kinds)
         if number < 6:
             raise InvalidDesign(expected("legs", "at least six constraints", number))
         return kinds
+
+    def _check_drives(self) -> None:
+        for i, drive in enumerate(self.drives):
+            if drive is not None:
+                check_line(f"legs[{i}]", drive, self.base_directions[i])
+
+    def _scaled_legs(self, factor: float) -> tuple[Leg, ...]:
+        return tuple(
+            leg if leg.drive is None else replace(leg, drive=scaled(leg.drive, factor))
+            for leg in self.legs
+        )
+
+    @property
+    def drives(self) -> tuple[Drive | None, ...]:
+        """What drives each leg at the base: a Slider, a Crank, or None for other legs.
+
+        *Source: docs/drives.md*
+        """
+        return tuple(leg.drive for leg in self.legs)
 
     @classmethod
     def from_frame(
@@ -115,7 +138,8 @@ class Design(AnchoredDesign[Pose]):
             Columns base_x, base_y, base_z, platform_x, platform_y, platform_z [unit], and where
             they are needed: constraints ("D1", "D4 A1" …; D1 without it), base_dx … base_dz and
             platform_dx … platform_dz (directions of lines), stroke_low and stroke_high [unit, rad]
-            (empty for no limit), stroke_low_2 and stroke_high_2 (of the angle of legs D4 A1).
+            (empty for no limit), stroke_low_2 and stroke_high_2 (of the angle of legs D4 A1); for
+            legs driven at the base drive ("slider", "crank"), rod, branch, arm_x, arm_y, arm_z.
         unit, name, source : str
         characteristic_length : float or None [unit]
         ellipsoid : Ellipsoid or None
@@ -174,12 +198,15 @@ class Design(AnchoredDesign[Pose]):
 
     @kept_property
     def mechanism(self) -> Mechanism:
-        """Its constraints, as a mechanism (one of the 195 if there are six, ≤ 3 angular)."""
+        """Its constraints, as a mechanism (one of the 195 if there are six, ≤ 3 angular).
+
+        A leg of fixed length that is driven at the base has the constraint D1.
+        """
         return _mechanism_of(tuple([c.name for leg in self.legs for c in leg.constraints]))
 
     @property
     def determinant_power(self) -> int:
-        """Power of the unit of length in det J of six rows: 3 − n_A1, n_A1 angular rows.
+        """Power of the unit of length in det J of six rows: 3 − n_A1, n_A1 rows of angles.
 
         The Jacobian has three columns of moments, and their entries are lengths but for those of
         angular rows. It has no meaning where the determinant has no unit (`determinant_has_unit`).
@@ -252,6 +279,34 @@ class Design(AnchoredDesign[Pose]):
 @lru_cache(maxsize=1024)
 def _mechanism_of(constraints: tuple[str, ...]) -> Mechanism:
     return Mechanism.of(constraints)
+
+
+def check_undriven(what: str, design: Any) -> Design:
+    """Return a design if no leg is driven at the base, or raise an error.
+
+    It is called wherever the formulas are those of legs that change their own length.
+
+    Parameters
+    ----------
+    what : str
+        The argument, for the message.
+    design : any
+
+    Raises
+    ------
+    InvalidInput
+        If it is not a Design.
+    InvalidDesign
+        If a leg is driven at the base.
+    """
+    check_type(what, design, Design)
+    chosen: Design = design
+    driven = [f"leg {i + 1} ({leg.name})" for i, leg in enumerate(chosen.legs) if leg.drive]
+    if driven:
+        wanted = "a design without legs that are driven at the base (see docs/drives.md)"
+        others = f" and {len(driven) - 1} others" if len(driven) > 1 else ""
+        raise InvalidDesign(expected(what, wanted, driven[0] + others))
+    return chosen
 
 
 def read_design(path: str | PathLike[str]) -> Design:

@@ -10,6 +10,7 @@ import numpy as np
 
 from gsp.errors import InvalidInput, UnknownName, apart, brief, expected
 from gsp.model.design.checks import below_zero
+from gsp.model.drives import DRIVES, Crank, Drive
 from gsp.model.legs import Leg, check_leg
 
 if TYPE_CHECKING:
@@ -20,8 +21,12 @@ DIRECTIONS = {side: [f"{side}_d{axis}" for axis in "xyz"] for side in ("base", "
 # Limits of the first and of the second actuator of a leg; only legs D4 A1 have two.
 STROKES = (("stroke_low", "stroke_high"), ("stroke_low_2", "stroke_high_2"))
 REQUIRED = (*POINTS["base"], *POINTS["platform"])
+# Of legs that are driven at the base.
+DRIVE = ("drive", "rod", "branch", "arm_x", "arm_y", "arm_z")
+TEXTS = ("constraints", "drive")
 COLUMNS = (
     "constraints",
+    *DRIVE,
     *POINTS["base"],
     *DIRECTIONS["base"],
     *POINTS["platform"],
@@ -44,9 +49,14 @@ def columns_from_design(design: Design) -> dict[str, list[Any]]:
     Returns
     -------
     dict of lists
-        Texts in `constraints`, floats elsewhere; NaN where a leg has no line or limit.
+        Texts in `TEXTS`, floats elsewhere; NaN where a leg has no line or limit, and "" or NaN
+        where it has no drive.
     """
-    found: dict[str, list[Any]] = {"constraints": [leg.name for leg in design.legs]}
+    words = (" ".join(constraint.name for constraint in leg.constraints) for leg in design.legs)
+    found: dict[str, list[Any]] = {"constraints": list(words)}
+    if design.driven:
+        columns = zip(*map(_of_drive, design.drives), strict=True)
+        found |= dict(zip(DRIVE, map(list, columns), strict=True))
     for side, points, lines, used in (
         ("base", design.base_points, design.base_directions, [x.base_line for x in design.legs]),
         (
@@ -69,6 +79,13 @@ def columns_from_design(design: Design) -> dict[str, list[Any]]:
                 found[name][row.leg] = value
             seen[row.leg] += 1
     return {name: found[name] for name in COLUMNS if name in found}
+
+
+def _of_drive(drive: Any) -> tuple[Any, ...]:
+    """Return what the columns `DRIVE` have for a drive or None."""
+    if drive is None:
+        return ("", *[math.nan] * 5)
+    return drive.kind, drive.rod, float(drive.branch), *getattr(drive, "arm", [math.nan] * 3)
 
 
 def check_columns(names: Sequence[Any], where: str) -> None:
@@ -110,7 +127,7 @@ def parameters_from_columns(columns: Mapping[str, Sequence[Any]], place: Place) 
     """
     number = len(columns[REQUIRED[0]])
     legs = [_leg(columns, i, place) for i in range(number)]
-    found: dict[str, Any] = {"legs": [leg.name for leg in legs]}
+    found: dict[str, Any] = {"legs": legs}
     for side in ("base", "platform"):
         found[f"{side}_points"] = [
             [_number(columns, name, i, place, "point") for name in POINTS[side]]
@@ -120,7 +137,7 @@ def parameters_from_columns(columns: Mapping[str, Sequence[Any]], place: Place) 
             _direction(columns, side, i, leg, place) for i, leg in enumerate(legs)
         ]
     found["strokes"] = [
-        _limits(columns, names, i, place, distance=constraint.quantity == "distance")
+        _limits(columns, names, i, place, distance=not constraint.signed)
         for i, leg in enumerate(legs)
         for names, constraint in zip(STROKES, leg.constraints, strict=False)
     ]
@@ -137,7 +154,42 @@ def _leg(columns: Mapping[str, Sequence[Any]], i: int, place: Place) -> Leg:
         given = "D1"
     if not isinstance(given, str):
         raise InvalidInput(expected(place(i, "constraints"), "a text", brief(given)))
-    return check_leg(given, place(i, "constraints"))
+    leg, kind = check_leg(given, place(i, "constraints")), None
+    if "drive" in columns and not is_missing(columns["drive"][i]):
+        kind = columns["drive"][i]
+    if kind is None or (isinstance(kind, str) and kind == ""):
+        for name in DRIVE[1:]:
+            if name in columns and not is_missing(columns[name][i]):
+                wanted = "nothing, as the leg has no drive"
+                raise InvalidInput(expected(place(i, name), wanted, brief(columns[name][i])))
+        return leg
+    if not isinstance(kind, str) or kind not in DRIVES:
+        wanted = " or ".join(map(repr, DRIVES)) + ", or nothing"
+        raise InvalidInput(expected(place(i, "drive"), wanted, brief(kind)))
+    if leg.name != "D1":
+        wanted = "nothing, as only legs D1 can be driven at the base"
+        raise InvalidInput(expected(place(i, "drive"), wanted, repr(kind)))
+    return check_leg(_drive(columns, i, DRIVES[kind], place))
+
+
+def _drive(columns: Mapping[str, Sequence[Any]], i: int, kind: type[Drive], place: Place) -> Drive:
+    """Return the drive of a row; without a branch it is 1."""
+    names = DRIVE[3:] if kind is Crank else ()
+    for name in ("rod", *names):
+        if name not in columns:
+            wanted = f"a column with this name, as the leg has a {kind.kind}"
+            raise InvalidInput(expected(place(i, name), wanted, "none"))
+    rod = _number(columns, "rod", i, place, "point")
+    branch = _number(columns, "branch", i, place, "limit") if "branch" in columns else math.nan
+    if not (math.isnan(branch) or branch in (-1.0, 1.0)):
+        raise InvalidInput(expected(place(i, "branch"), "1 or -1, or nothing", f"{branch:g}"))
+    chosen: dict[str, Any] = {"rod": rod, "branch": -1 if branch == -1.0 else 1}
+    if names:
+        chosen["arm"] = [_number(columns, name, i, place, "point") for name in names]
+    try:
+        return kind(**chosen)
+    except InvalidInput as error:
+        raise InvalidInput(f"{place(i, 'rod')}: {error}") from error
 
 
 def _direction(

@@ -17,6 +17,7 @@ from gsp.model.design.frame import (
     COLUMNS,
     DIRECTIONS,
     STROKES,
+    TEXTS,
     check_columns,
     is_missing,
     parameters_from_columns,
@@ -82,7 +83,7 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
         columns = {name: [cells[i] for _, cells in filled] for i, name in kept}
         if path.suffix.lower() == ".csv":
             columns = {
-                name: cells if name == "constraints" else _numbers(cells, name, place)
+                name: cells if name in TEXTS else _numbers(cells, name, place)
                 for name, cells in columns.items()
             }
         design = Design(**parameters_from_columns(columns, place), **parameters)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import fields
 from typing import Any, NoReturn
 
 import numpy as np
@@ -69,7 +70,9 @@ def toml_from_design(design: Any) -> str:
         ]
     row = 0
     for i, leg in enumerate(design.legs):
-        lines += ["", "[[legs]]", f'constraints = "{leg.name}"']
+        drive = getattr(leg, "drive", None)
+        lines += ["", "[[legs]]", f'constraints = "{leg.name if drive is None else "D1"}"']
+        lines += [] if drive is None else [f"drive = {_drive_text(drive)}"]
         lines.append(f"base_point = {_numbers(design.base_points[i])}")
         if leg.base_line:
             lines.append(f"base_direction = {_numbers(design.base_directions[i])}")
@@ -117,13 +120,19 @@ class Reader:
                     expected("key", "one of " + ", ".join(keys), repr(key)), key, table, number
                 )
 
+    def holds_boolean(self, value: Any) -> bool:
+        """Whether a value is true or false, or a list that holds one at any depth."""
+        if isinstance(value, list):
+            return any(map(self.holds_boolean, value))
+        return isinstance(value, bool)
+
     def array(
         self, data: dict[str, Any], key: str, shape: tuple[int, ...], table: str, number: int = 0
     ) -> Array:
         """Return the numbers of a key, of one shape."""
         if key not in data:
             self.fail("expected this key, received none", key, table, number)
-        if _holds_boolean(data[key]):  # numpy takes true for 1
+        if self.holds_boolean(data[key]):  # numpy takes true for 1
             self.fail(expected("value", "real numbers", brief(data[key])), key, table, number)
         try:
             array = arguments.bounded_array("value", data[key], (), finite=key != "strokes")
@@ -198,27 +207,29 @@ class Reader:
             )
         }
         for i, leg in enumerate(tables):
-            self.known(leg, _LEG, "legs", i)
+            self.known(leg, (*_LEG, "drive") if self.form.drive else _LEG, "legs", i)
             try:
                 kind = self.form.check_leg(leg.get("constraints", ""), f"legs[{i}]")
             except InvalidInput as error:
                 self.fail(str(error), "constraints", "legs", i)
-            columns["legs"].append(kind.name)
+            if self.form.drive is not None and "drive" in leg:
+                kind = self.form.drive(self, leg["drive"], kind, i)
+            columns["legs"].append(kind)
             for side, line in (("base", kind.base_line), ("platform", kind.platform_line)):
                 point = self.array(leg, f"{side}_point", (self.form.dimension,), "legs", i)
                 columns[f"{side}_points"].append(point)
                 columns[f"{side}_directions"].append(self.direction(leg, side, point, line, i))
-            angular = np.array([one.quantity == "angle" for one in kind.constraints])
-            columns["strokes"].append(self.strokes(leg, angular, i))
+            signed = np.array([one.signed for one in kind.constraints])
+            columns["strokes"].append(self.strokes(leg, signed, i))
         number = sum(map(len, columns["strokes"]))
         if number < self.form.least:
             wanted = f"at least {_NUMBERS[self.form.least]} constraints"
             self.fail(expected("legs", wanted, number), "legs")
         return {**columns, "strokes": np.concatenate(columns.pop("strokes"))}
 
-    def strokes(self, leg: dict[str, Any], angular: Mask, i: int) -> Array:
+    def strokes(self, leg: dict[str, Any], signed: Mask, i: int) -> Array:
         """Return the limits of the actuators of a leg, (1, 2) or (2, 2); one pair serves alone."""
-        given, shape = leg.get("strokes"), (len(angular), 2)
+        given, shape = leg.get("strokes"), (len(signed), 2)
         if given is None:
             return np.full(shape, np.nan)
         if shape[0] == 1 and isinstance(given, list) and len(given) == 2:
@@ -227,7 +238,7 @@ class Reader:
         if (limits[:, 0] > limits[:, 1]).any():
             message = expected("value", "least ≤ greatest", brief(given))
             self.fail(message, "strokes", "legs", i)
-        if (~angular & below_zero(limits)).any():
+        if (~signed & below_zero(limits)).any():
             wanted = "numbers ≥ 0, as no distance is negative"
             self.fail(expected("value", wanted, brief(given)), "strokes", "legs", i)
         return limits
@@ -251,11 +262,10 @@ class Reader:
         return vector
 
 
-def _holds_boolean(value: Any) -> bool:
-    """Whether a value of a TOML text is true or false, or a list that holds one at any depth."""
-    if isinstance(value, list):
-        return any(map(_holds_boolean, value))
-    return isinstance(value, bool)
+def _drive_text(drive: Any) -> str:
+    """Return a drive as a TOML table in one line."""
+    numbers = (f"{part.name} = {_numbers(getattr(drive, part.name))}" for part in fields(drive))
+    return f'{{ kind = "{drive.kind}", {", ".join(numbers)} }}'
 
 
 def _numbers(array: Array) -> str:

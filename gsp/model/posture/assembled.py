@@ -42,6 +42,23 @@ class Undefined(NamedTuple):
     reason: str
 
 
+class Stalled(NamedTuple):
+    """A drive of a posture that is singular, and why: the row of its joint is infinite.
+
+    Attributes
+    ----------
+    pose : tuple of int
+        Place of the pose in the batch; () of a single pose.
+    joint : str
+        Name of the actuated joint, such as "theta1".
+    reason : str
+    """
+
+    pose: tuple[int, ...]
+    joint: str
+    reason: str
+
+
 class Assembled(ReadOnly):
     """A design at poses, with the attributes that `Evaluated` documents: values and rows."""
 
@@ -142,13 +159,15 @@ class Assembled(ReadOnly):
     def undefined(self) -> tuple[Undefined, ...]:
         """The elements that are NaN, each with pose, joint and reason; () when there are none."""
         return tuple(
-            Undefined(
-                tuple(int(i) for i in where[:-1]),
-                self.joint_names[where[-1]],
-                self.design.rows[where[-1]].constraint.undefined,
-            )
-            for where in np.argwhere(np.isnan(self.joints))
+            Undefined(pose, joint, constraint.undefined)
+            for pose, joint, constraint in self._named(np.isnan(self.joints))
         )
+
+    def _named(self, marked: Mask) -> Iterator[tuple[tuple[int, ...], str, Any]]:
+        """Yield pose, name of the joint and constraint of the elements (..., n) that are marked."""
+        for where in np.argwhere(marked):
+            place = tuple(int(i) for i in where[:-1])
+            yield place, self.joint_names[where[-1]], self.design.rows[where[-1]].constraint
 
     def check_defined(self) -> None:
         """Raise an error, with joint and reason, if an element has no value.
@@ -159,3 +178,17 @@ class Assembled(ReadOnly):
         """
         if not self.defined.all():
             raise UndefinedPosture(self.design.name, self.undefined)
+
+
+def finite_rows(posture: Assembled, rows: Array) -> Array:
+    """Return rows (..., n, c) with NaN in place of infinite ones, whose sums are not defined.
+
+    Only rows of drives at the base are infinite, where the drive is singular.
+
+    Parameters
+    ----------
+    posture : Posture or PlanarPosture
+    rows : (..., n, c) array
+        Its Jacobian, or a multiple of it.
+    """
+    return np.where(np.isinf(rows), np.nan, rows) if posture.design.driven else rows

@@ -47,6 +47,8 @@ class Group(ReadOnly):
         a and b [length], s and t; t is empty where the kind has no line on the platform.
     reach : (k, 1) array [length]
         |a| + |b|.
+    drives : (m, k, 1) array, or none
+        The numbers of the drives of legs that are driven at the base.
     """
 
     kind: Any
@@ -56,6 +58,7 @@ class Group(ReadOnly):
     points: tuple[Any, Any]
     directions: tuple[Any, Any]
     reach: Array
+    drives: Any = ()
 
 
 class Part(NamedTuple):
@@ -89,7 +92,9 @@ def groups(
     reach = norm(points[0]) + norm(points[1])
     result = []
     for kind in kinds:
-        chosen = np.array([i for i, leg in enumerate(legs) if leg is kind], dtype=np.int64)
+        chosen = np.array(
+            [i for i, leg in enumerate(legs) if leg.name == kind.name], dtype=np.int64
+        )
         if not chosen.size:
             continue
         a, b, s, t = (x[chosen].T[..., None] for x in (*points, *directions))
@@ -102,9 +107,17 @@ def groups(
                 points=(a, b),
                 directions=(s, t if kind.platform_line else []),
                 reach=reach[chosen, None],
+                drives=_numbers_of_drives([legs[i] for i in chosen]),
             )
         )
     return tuple(result)
+
+
+def _numbers_of_drives(legs: Sequence[Any]) -> Any:
+    """Return the numbers of the drives of legs of one kind, (m, k, 1), or () if it has none."""
+    if getattr(legs[0], "drive", None) is None:
+        return ()
+    return np.array([leg.drive.numbers for leg in legs]).T[..., None]
 
 
 def _places(indices: NDArray[np.int64]) -> Places:
@@ -148,6 +161,8 @@ def _scalars(array: Array) -> Any:
 def part_of(group: Group, poses: slice, p: Vector, r: Vector, distance: Any) -> Part:
     """Return the legs of a group at poses whose p, R and |p| are scalars of any kind."""
     at = placement(p, r, group.points, group.directions, distance + group.reach)
+    if len(group.drives):
+        at = at._replace(drive=group.drives)
     segment = group.kind.segment(at)
     undefined = None if np.all(segment.defined) else ~segment.defined
     return Part(poses, group, at, segment, undefined)

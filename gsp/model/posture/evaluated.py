@@ -16,7 +16,7 @@ from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask
-from gsp.model.posture.assembled import Assembled
+from gsp.model.posture.assembled import Assembled, finite_rows
 from gsp.model.posture.statics import least_forces
 
 
@@ -99,7 +99,9 @@ class Evaluated(Assembled):
         *Source: docs/conventions.md, "Homogeneous Jacobian"; the rule for angular rows is ours*
         """
         needed = bool(self.angular.any())
-        return self._times_length(check_length(length, needed, "the design has A1 actuators"))
+        return self._times_length(
+            check_length(length, needed, "the design has A1 actuators or cranks")
+        )
 
     def _times_length(self, length: float | None) -> Array:
         """Return the Jacobian with rows of angles multiplied by a length."""
@@ -198,7 +200,12 @@ class Evaluated(Assembled):
         """
         size = self.design.rms_radius
         centre = arm_of_centre(self.design, self.pose) / size
-        return about_point(self.homogeneous(size), centre[..., None, :])
+        rows = self.homogeneous(size)
+        if not self.design.driven:
+            return about_point(rows, centre[..., None, :])
+        with np.errstate(invalid="ignore"):
+            moved = about_point(rows, centre[..., None, :])
+        return np.where(np.isinf(rows), rows, moved)
 
     @kept_property
     def _centred_values(self) -> Array:
@@ -215,7 +222,8 @@ class Evaluated(Assembled):
         Returns
         -------
         (..., c) array [force, force · unit of the design]
-            Force and moment about the platform origin in base axes; NaN where the Jacobian is.
+            Force and moment about the platform origin in base axes; NaN where the Jacobian is, or
+            is infinite.
 
         Raises
         ------
@@ -227,7 +235,7 @@ class Evaluated(Assembled):
         """
         forces = bounded_array("actuator_forces", actuator_forces, (len(self.joint_names),))
         common_shape("actuator_forces", forces.shape[:-1], self.shape)
-        return np.asarray((forces[..., None, :] @ self.jacobian)[..., 0, :])
+        return np.asarray((forces[..., None, :] @ finite_rows(self, self.jacobian))[..., 0, :])
 
     def actuator_forces(self, wrench: ArrayLike) -> Array:
         """Return the actuator forces that balance an external wrench, Jᵀ f = −w.

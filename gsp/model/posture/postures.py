@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, Mask
+from gsp.model.posture.assembled import Stalled
 from gsp.model.posture.assembly import put
 from gsp.model.posture.evaluated import Evaluated
 
 if TYPE_CHECKING:
     from gsp.model.design import Design
+    from gsp.model.rods import Driven
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -45,7 +48,7 @@ class Segments(ReadOnly):
     Attributes
     ----------
     base_feet, platform_feet : (..., n_legs, 3) arrays [length]
-        Their ends.
+        Their ends; of a leg that is driven at the base those of its rod, the tip and the anchor.
     direction : (..., n_legs, 3) array [1]
         Unit vectors from base foot to platform foot; of a D4 or A1 leg whose lines meet, +t × s
         over its norm.
@@ -93,11 +96,59 @@ class Posture(Evaluated):
         and ω the angular velocity, both in base axes. Rows of distances are [1, unit], rows of
         angles [1/unit, 1]. *Source: TozKucuk2016, eqs. (8), (12)–(16)*
 
-    NaN marks an element that is not defined; `undefined` gives the reason.
+    NaN marks an element that is not defined; `undefined` gives the reason. The row of a drive at
+    the base that is singular is infinite; `stalled` gives the reason.
     """
 
     design: Design
     pose: Pose
+
+    @kept_property
+    def drive_scales(self) -> Array:
+        """Speed of the tip of each rod along the rod per joint rate, shape (..., n) [1, length].
+
+        A row of a driven leg is that of a fixed base anchor, over this number; it is positive on
+        the branch 1 and zero where the drive is singular. 1 for joints that are not driven at the
+        base; NaN where undefined.
+
+        *Source: docs/drives.md; ours*
+        """
+        return self._of_drives(lambda driven: driven.scale, 1.0)
+
+    @kept_property
+    def stalls(self) -> Mask:
+        """Which drives at the base are singular, shape (..., n): their rates have no bound.
+
+        *Source: the first kind of singularity of Gosselin and Angeles (1990); docs/drives.md*
+        """
+        regular = self._of_drives(lambda driven: np.where(driven.regular, 1.0, 0.0), 1.0)
+        return np.asarray(regular == 0.0)
+
+    @property
+    def stalled_poses(self) -> Mask:
+        """Where a drive at the base is singular, and all legs are defined, shape (...).
+
+        *Source: ours; docs/drives.md*
+        """
+        return np.asarray(self.stalls.any(axis=-1) & self.defined)
+
+    @property
+    def stalled(self) -> tuple[Stalled, ...]:
+        """The drives at the base that are singular, each with pose, joint and reason."""
+        return tuple(
+            Stalled(pose, joint, constraint.stalled)
+            for pose, joint, constraint in self._named(self.stalls)
+        )
+
+    def _of_drives(self, measure: Callable[[Driven], Any], other: float) -> Array:
+        """Return a number per joint, shape (..., n), from what its drive adds to the segment."""
+        found = np.full((self.pose.size, len(self.joint_names), 1), other)
+        if self.design.driven:
+            with np.errstate(all="ignore"):
+                for poses, group, _, segment, undefined in self._parts():
+                    if segment.driven is not None:
+                        put(found, poses, group.rows[0], [measure(segment.driven)], undefined)
+        return self._batch(found[..., 0])
 
     @kept_property
     def lines(self) -> Lines:

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 # The palette of Okabe and Ito (2008).
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#E69F00", "#009E73", "#CC79A7"
 VERMILION, SKY, GREY = "#D55E00", "#56B4E9", "#8A8F98"
+# Ours, for legs that are driven at the base.
+BROWN, DARK = "#7A5C00", "#3D3D3D"
 
 # Colour and marker of each class: no class is marked by its colour alone.
 CLASSES = MappingProxyType(
@@ -38,6 +40,8 @@ LEGS = MappingProxyType(
         "D4": ORANGE,
         "A1": VERMILION,
         "D4 A1": PURPLE,
+        "PSS": BROWN,
+        "RSS": DARK,
     }
 )
 

@@ -13,7 +13,7 @@ from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.pose import Pose, PosePath
 from gsp.geometry.pose.paths import check_nodes, check_times
 from gsp.limits import Limits
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.proof.branching.claims import claims_of
 from gsp.proof.branching.problem import problem_of
 from gsp.proof.paths.certificate import PathCertificate
@@ -97,7 +97,7 @@ def certify_path(
 
     *Source: ours; see `docs/proofs.md`.*
     """
-    check_type("design", design, Design)
+    check_undriven("design", design)
     if limits is not None:
         check_type("limits", limits, Limits)
     if tolerances is not None:

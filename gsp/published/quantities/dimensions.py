@@ -38,6 +38,21 @@ def line_distances(design: str, side: str, point: Sequence[float]) -> Array:
     return np.asarray(norm(cross(np.asarray(point) - anchors(design, side), directions)))
 
 
+def directions(design: str, side: str) -> Array:
+    """Lines of a design on its "base" or "platform", as unit vectors [1]: (n, 3)."""
+    placed = catalogue.design(design)
+    return _at(side, placed.base_directions, placed.platform_directions)
+
+
+def drives(design: str) -> Array:
+    """Rod, branch and arm of each drive at the base [unit of the design, 1]: (n, 5); NaN for none.
+
+    Sliders have no arm.
+    """
+    numbers = [() if d is None else d.numbers for d in catalogue.design(design).drives]
+    return np.array([[*given, *[np.nan] * (5 - len(given))] for given in numbers])
+
+
 def home(design: str) -> Array:
     """Home pose of a design: x, y, z [its unit], roll, pitch, yaw [°]."""
     pose = catalogue.design(design).home
@@ -81,6 +96,16 @@ def metres(design: str) -> float:
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
         f.__name__: f
-        for f in (anchors, line_distances, home, strokes, semi_axes, stated_length, metres)
+        for f in (
+            anchors,
+            line_distances,
+            directions,
+            drives,
+            home,
+            strokes,
+            semi_axes,
+            stated_length,
+            metres,
+        )
     }
 )

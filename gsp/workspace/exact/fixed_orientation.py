@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_type
 from gsp.errors import InvalidDesign, InvalidInput, expected
 from gsp.geometry.rotations import check_rotation
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.workspace.exact.shells import Shells
 
 
@@ -66,7 +65,7 @@ def exact_shells(
 
 def stroke_bounds(design: Design, limits: Limits | None) -> BoundedQuantities:
     """Return the strokes of a design of SPS legs, and raise if anything else bounds it."""
-    check_type("design", design, Design)
+    check_undriven("design", design)
     if not design.between_points:
         other = sorted({leg.name for leg in design.legs if leg.cylindrical})
         wanted = "SPS legs (D1) alone; for others use a section with fixed orientation"

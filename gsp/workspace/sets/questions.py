@@ -14,7 +14,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import angles_from_rotation, check_rotation
 from gsp.limits import Limits
-from gsp.model.design import Design
+from gsp.model.design import Design, check_undriven
 from gsp.progress import Progress
 from gsp.workspace.sets.problem import bounded
 from gsp.workspace.sets.region.regions import Region
@@ -290,7 +290,7 @@ def orientations(
 
 
 def _design(design: Any) -> Design:
-    check_type("design", design, Design)
+    check_undriven("design", design)
     return design  # type: ignore[no-any-return]
 
 

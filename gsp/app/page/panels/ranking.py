@@ -12,7 +12,7 @@ from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.state import choices, curves
 from gsp.app.state.session import started
-from gsp.catalogue import design_names, instantiate, mechanism
+from gsp.catalogue import instantiate, mechanism
 from gsp.errors import GspError
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -55,7 +55,7 @@ SORT = """(rows, by, down) => {
 
 def catalogue_panel(client: Client) -> None:
     """Build the ranking of the 195 mechanisms at the present pose; a click loads one."""
-    names = [PRESENT, *design_names()]
+    names = [PRESENT, *choices.published_names()]
     used: list[Design] = []  # the template of the table
     with ui.element("div").classes("gsp-row"):
         index = ui.select(RANKED, value="control_number", label="Index to rank by")
