@@ -16,6 +16,7 @@ from gsp.checks import check_items, check_line, check_positive, check_type, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.exploration.toml import toml_from_task
 from gsp.files.writing import write_text
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox, PosePath
 from gsp.geometry.vectors import frozen
@@ -94,7 +95,7 @@ class Wanted:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Task:
+class Task(ReadOnly):
     """What designs are compared for: poses, limits, and what is wanted of which index.
 
     Parameters

@@ -1,5 +1,8 @@
 """Tasks: their poses, what is wanted, and their files."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -72,6 +75,13 @@ def test_loads_are_written(tmp_path):
     assert task.payload.lower.tolist() == [1, 2, 3, 4, 5, 6.1]
     assert task.payload.lower_centre == 20
     assert gsp.Task(poses=BOX, wanted="mean CTN").payload is None
+
+
+def test_copies_of_a_task_cannot_be_changed():
+    task = gsp.Task(poses=BOX, wanted="mean CTN", wrench=np.arange(6.0))
+    for copied in (task, copy.deepcopy(task), pickle.loads(pickle.dumps(task))):
+        with pytest.raises(ValueError, match="read-only"):
+            copied.wrench[0] = 1.0
 
 
 def test_poses():

@@ -129,7 +129,7 @@ def _print_points(mapped: Section, angle: float | None) -> None:
     table = plain_table("nr", "label", *numbers, farthest, right=numbers)
     for i, (point, last) in enumerate(zip(mapped.bifurcations, outer, strict=True)):
         x, y = _without_rounding(mapped, point.pose.position[:2])
-        cells = (number(x, 7), number(y, 7), f"{_turns(point.pose):.6f}")
+        cells = (number(x, 7), number(y, 7), f"{np.round(_turns(point.pose), 6) + 0.0:.6f}")
         table.add_row(str(i), point.label, *cells, "yes" if last else "no")
     show_table(table)
     n = mapped.bounds.joints
