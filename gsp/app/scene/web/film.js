@@ -48,8 +48,13 @@ export async function film(scene, kind, places, seconds, name) {
   const scale = Math.min(1, LONGEST_SIDE / Math.max(width, height));
   const canvas = document.createElement("canvas");
   const delay = (1000 * seconds) / places.length;
-  const blob = await (kind === "gif" ? animation : video)(scene, canvas, places, scale, delay);
+  const [blob, all] = await (kind === "gif" ? animation : video)(scene, canvas, places, scale, delay);
   save(blob, `${name}.${kind === "gif" ? "gif" : blob.type.includes("mp4") ? "mp4" : "webm"}`);
+  const has = all ? await duration(blob) : 0;
+  if (has < all) {
+    const part = `${has.toFixed(1)} s of ${all.toFixed(1)} s`;
+    throw new Error(`the browser was too slow and recorded ${part}; a GIF has all pictures`);
+  }
   return blob.size;
 }
 
@@ -60,6 +65,7 @@ function chosen(places, delay) {
   return [places.filter((_, i) => i % step === 0 || i === last), delay * step];
 }
 
+// The film, and how many seconds of it there have to be, where some can be lost.
 async function animation(scene, canvas, places, scale, delay) {
   const frames = [], [shown, pause] = chosen(places, delay);
   for (const place of shown) {
@@ -68,7 +74,7 @@ async function animation(scene, canvas, places, scale, delay) {
     frames.push(canvas.getContext("2d").getImageData(0, 0, width, height).data);
     await new Promise((done) => setTimeout(done));
   }
-  return gif(frames, canvas.width, canvas.height, pause);
+  return [gif(frames, canvas.width, canvas.height, pause), 0];
 }
 
 async function video(scene, canvas, places, scale, delay) {
@@ -92,13 +98,7 @@ async function video(scene, canvas, places, scale, delay) {
   recorder.stop();
   await ended;
   stream.getTracks().forEach((track) => track.stop());
-  const blob = new Blob(parts, { type: recorder.mimeType });
-  const length = await duration(blob);
-  if (length < (motion - pause) / 1000) {
-    const [has, all] = [length, motion / 1000].map((x) => x.toFixed(1));
-    throw new Error(`the browser was too slow: it recorded ${has} s of ${all} s; a GIF has all pictures`);
-  }
-  return blob;
+  return [new Blob(parts, { type: recorder.mimeType }), (motion - pause) / 1000];
 }
 
 // The duration of a video [s], which is known at its end only; infinite where it stays unknown.
