@@ -73,7 +73,10 @@ def test_nan_stays_in_its_matrix(name, bad, value):
     dirty = matrices.copy()
     dirty[bad, 1, 2] = value
     one, two = FUNCTIONS[name](matrices), FUNCTIONS[name](dirty)
-    assert not np.isfinite(two[bad]).all()
+    if name == "reciprocal_condition" and value == np.inf:  # the row of a singular drive
+        assert two[bad] == 0.0
+    else:
+        assert not np.isfinite(two[bad]).all()
     good = np.arange(5) != bad
     np.testing.assert_array_equal(two[good], one[good])
     np.testing.assert_array_equal(defined_matrices(dirty), good)
