@@ -56,7 +56,6 @@ async def swipe(tab, places):
     await tab.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
 
-@pytest.mark.xfail(reason="after a drag the key Home leaves the slider where it is: open")
 def test_a_slider_by_mouse_keys_and_numbers(visit):
     state = started(gsp.catalogue.design(SIX_THREE))
     first = float(state.pose.position[2])
@@ -74,6 +73,7 @@ def test_a_slider_by_mouse_keys_and_numbers(visit):
             )
         await tab.until(f"{value('position z')} > {first + 1.0}")
         await tab.send("Input.dispatchMouseEvent", type="mouseReleased", x=x + 24, **mouse)
+        await asyncio.sleep(0.5)  # the browser sends the last value of a drag with a delay
         # The slider has the focus: its keys go to its ends, and the motion ends at limits.
         for key, code, end in (("Home", 36, bottom), ("End", 35, top)):
             await tab.key(key, code)
