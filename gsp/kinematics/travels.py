@@ -72,6 +72,9 @@ def travel(
     ‖J⁻¹‖ (dimensionless, Frobenius) exceeds 7e6, at which a posture counts as singular in
     double precision.
 
+    About a far origin a turn moves the anchors on a long curve. The steps stay as short as beside
+    the anchors, so without strokes give `farthest`: the default may take minutes.
+
     Parameters
     ----------
     design : Design

@@ -106,7 +106,9 @@ class PlanarComponent(ReadOnly):
 def planar_components(design: PlanarDesign, angle: float = 0.0) -> tuple[PlanarComponent, ...]:
     """Return all parts of the workspace of a planar platform at a fixed angle, the largest first.
 
-    Parts that only touch are separate. Parts and gaps smaller than 1e-7 of the size may be missed.
+    Parts and gaps smaller than 1e-7 of the size may be missed. Parts that only touch are separate
+    where curves cross; between curves that are tangent there, rounding decides whether they are one
+    part. Their total area and `contains` do not depend on it.
 
     Parameters
     ----------
