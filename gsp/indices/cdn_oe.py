@@ -9,7 +9,7 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import condition, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, ON_PLATFORM, Index
-from gsp.indices.requirements import require_posture, with_stalls
+from gsp.indices.requirements import require_posture, with_singular_drives
 from gsp.indices.spectra import extremes
 from gsp.model.posture import Posture
 from gsp.model.posture.assembled import finite_rows
@@ -49,7 +49,7 @@ def condition_number_ellipsoid(
     check_type("ellipsoid", ellipsoid, Ellipsoid)
     finite = finite_rows(posture, posture.weighted(length))
     rows = ellipsoid.whiten(finite, posture.pose.rotation)
-    return with_stalls(posture, condition(singular_values(rows)), np.inf)
+    return with_singular_drives(posture, condition(singular_values(rows)), np.inf)
 
 
 def _slope(slopes: Slopes, ellipsoid: Ellipsoid, length: float | None = None) -> Array:

@@ -12,7 +12,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import reciprocal_condition, singular_values, whiten
 from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.indices.record import ALL_SIX, Index, Invariance
-from gsp.indices.requirements import require_posture, with_stalls
+from gsp.indices.requirements import require_posture, with_singular_drives
 from gsp.indices.spectra import whitened_extremes
 from gsp.model.design import Design
 from gsp.model.formulas import ZERO
@@ -69,7 +69,7 @@ def condition_number_points(
         values = singular_values(whiten(in_platform, _velocities(chosen)))
         least = np.fmin(least, reciprocal_condition(values))
     with np.errstate(divide="ignore"):
-        return with_stalls(posture, np.asarray(1.0 / least), np.inf)
+        return with_singular_drives(posture, np.asarray(1.0 / least), np.inf)
 
 
 def _turned(rows: Array, turn: Array) -> Array:

@@ -8,7 +8,7 @@ from gsp import arguments
 from gsp.geometry.matrices import defined_matrices, full_rank, log_and_inverse
 from gsp.geometry.vectors import Array
 from gsp.indices.record import AT_PLATFORM_ORIGIN, Index, Properties
-from gsp.indices.requirements import require_posture, with_stalls
+from gsp.indices.requirements import require_posture, with_singular_drives
 from gsp.indices.spectra import REPEATED_GAP, shared_slope
 from gsp.model.posture import Posture
 from gsp.model.posture.slopes import Slopes
@@ -59,7 +59,7 @@ def greatest_force(posture: Posture, length: float) -> Array:
     inverses = 1.0 / np.where(regular[..., None], values, 1.0)
     norms = np.sqrt(((left * inverses[..., None, :]) ** 2).sum(axis=-1))
     greatest = np.where(regular, norms.max(axis=-1), np.inf)
-    return with_stalls(posture, np.where(known, greatest, np.nan), np.inf)
+    return with_singular_drives(posture, np.where(known, greatest, np.nan), np.inf)
 
 
 def _slope(slopes: Slopes, length: float) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 from gsp.geometry.matrices import defined_matrices, rounding_of_rank, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
-from gsp.indices.requirements import require_posture, with_stalls
+from gsp.indices.requirements import require_posture, with_singular_drives
 from gsp.indices.spectra import decomposed, extremes, of_block
 from gsp.model.posture import Posture
 from gsp.model.posture.assembled import finite_rows
@@ -44,7 +44,7 @@ def complex_deviation_rotation(posture: Posture, length: float | None = None) ->
     rows = finite_rows(posture, posture.weighted(length))
     forces, moments = rows[..., :3], rows[..., 3:]
     least = _least(without_span(moments, forces), np.linalg.norm(moments, axis=(-2, -1)))
-    return with_stalls(posture, least, 0.0)
+    return with_singular_drives(posture, least, 0.0)
 
 
 def complex_deviation_translation(posture: Posture) -> Array:
@@ -75,7 +75,7 @@ def complex_deviation_translation(posture: Posture) -> Array:
     require_posture(posture)
     forces = finite_rows(posture, posture.jacobian)[..., :3]
     least = _least(forces, np.linalg.norm(forces, axis=(-2, -1)))
-    return with_stalls(posture, least, 0.0)
+    return with_singular_drives(posture, least, 0.0)
 
 
 def without_span(matrix: Array, span: Array) -> Array:

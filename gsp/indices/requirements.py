@@ -19,11 +19,11 @@ def require_posture(posture: Any) -> None:
         raise InvalidInput(expected("posture", "a gsp.Posture, as design.at(pose) makes", got))
 
 
-def with_stalls(posture: Posture, values: Array, worst: float) -> Array:
+def with_singular_drives(posture: Posture, values: Array, worst: float) -> Array:
     """Return values of an index (...), the worst one where a drive at the base is singular.
 
     The Jacobian has an infinite row there; other legs that are undefined leave NaN.
     """
     if not posture.design.driven:
         return values
-    return np.asarray(np.where(posture.stalled_poses, worst, values))
+    return np.asarray(np.where(posture.poses_of_singular_drives, worst, values))

@@ -54,7 +54,7 @@ class Constraint:
         Equations of value and row.
     driven : bool
         Whether it is the value of a drive at the base.
-    stalled : str
+    singular : str
         Where the row is infinite, of a drive.
     """
 
@@ -69,7 +69,7 @@ class Constraint:
     undefined: str
     source: str
     driven: bool = False
-    stalled: str = ""
+    singular: str = ""
 
     @property
     def signed(self) -> bool:
@@ -167,7 +167,7 @@ BY_SLIDER = Constraint(
     undefined="the rod does not reach from the rail to the platform anchor",
     source="docs/drives.md",
     driven=True,
-    stalled="the rod is perpendicular to the rail",
+    singular="the rod is perpendicular to the rail",
 )
 BY_CRANK = Constraint(
     name="D1",
@@ -181,5 +181,5 @@ BY_CRANK = Constraint(
     undefined="crank and rod do not reach the platform anchor, or it is on the axis",
     source="docs/drives.md",
     driven=True,
-    stalled="the rod is in the plane of the axis and the crank",
+    singular="the rod is in the plane of the axis and the crank",
 )

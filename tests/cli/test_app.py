@@ -319,7 +319,7 @@ def test_tables_at_any_width(columns):
 
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_line_where_code_is_compiled(gsp, monkeypatch, terminal):
-    """Half a minute without a word looks like a command that hangs; once for a process."""
+    """Half a minute without a message looks like a command that hangs; once for a process."""
     from gsp.cli.design import show
     from gsp.kernels import compiled
 

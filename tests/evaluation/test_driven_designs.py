@@ -236,7 +236,7 @@ def test_singular_drives_are_counted_as_singular():
     legs = [gsp.Slider(rod=3.0), *["D1"] * 5]
     base = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [-2, 0, 0], [0, -2, 0], [1, 1, 0]]
     platform = [[0, 0, 0], [1, 0.2, 0], [0, 1, 0.1], [-1, 0.3, 0], [0.2, -1, 0], [0.3, 0.3, 0.1]]
-    design = gsp.Design(legs, base, platform, [[1, 0, 0]] * 6, name="stalls")
+    design = gsp.Design(legs, base, platform, [[1, 0, 0]] * 6, name="singular drives")
     poses = gsp.Pose([[0.3, 0, z] for z in (2.5, 3.0, 3.5, 2.9)])
     row = gsp.rank(design, poses, ["condition_number"], length=0.7).iloc[0]
     assert (row["singular"], row["undefined"]) in ((1, 1), (0.25, 0.25))

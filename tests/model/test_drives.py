@@ -184,7 +184,7 @@ def test_public_inverse_kinematics_of_vertical_rails():
 # --- undefined and singular ---
 
 
-def stalling(kind):
+def around_dead_centres(kind):
     """A design, and poses along x where the drive of leg 1 reaches, is singular, does not reach."""
     others = dict(base_points=[[0, 0, 0], [2, 0, 0], [0, 2, 0], [-2, 0, 0], [0, -2, 0], [1, 1, 0]])
     others["platform_points"] = [
@@ -201,17 +201,17 @@ def stalling(kind):
 
 @pytest.mark.parametrize("kind", ["slider", "crank"])
 def test_out_of_reach_is_undefined_and_dead_centres_are_singular(kind):
-    design, poses = stalling(kind)
+    design, poses = around_dead_centres(kind)
     posture = design.at(poses)
     assert posture.defined.tolist() == [True, True, False]
     assert [(e.pose, e.joint) for e in posture.undefined] == [((2,), design.joint_names[0])]
     assert "reach" in posture.undefined[0].reason
-    assert posture.stalls[:, 0].tolist() == [False, True, False]
-    assert not posture.stalls[:, 1:].any()
-    (stalled,) = posture.stalled
+    assert posture.drive_is_singular[:, 0].tolist() == [False, True, False]
+    assert not posture.drive_is_singular[:, 1:].any()
+    (drive,) = posture.singular_drives
     reason = {"slider": "perpendicular to the rail", "crank": "plane of the axis and the crank"}
-    assert stalled.pose == (1,)
-    assert reason[kind] in stalled.reason
+    assert drive.pose == (1,)
+    assert reason[kind] in drive.reason
     assert np.isposinf(posture.jacobian[1, 0]).all()
     assert np.isfinite(posture.jacobian[1, 1:]).all()
     expected = 0.3 if kind == "slider" else -np.pi / 2
@@ -222,7 +222,7 @@ def test_out_of_reach_is_undefined_and_dead_centres_are_singular(kind):
 
 @pytest.mark.parametrize("kind", ["slider", "crank"])
 def test_each_index_is_the_worst_where_a_drive_is_singular(kind):
-    design, poses = stalling(kind)
+    design, poses = around_dead_centres(kind)
     posture = design.at(poses)
     given = {"length": 1.0, "ellipsoid": gsp.Ellipsoid(1.0), "maximum": 1.0}
     for index in gsp.indices.INDICES.values():
@@ -237,7 +237,7 @@ def test_each_index_is_the_worst_where_a_drive_is_singular(kind):
 
 
 def test_forces_where_a_drive_is_singular():
-    design, poses = stalling("slider")
+    design, poses = around_dead_centres("slider")
     posture = design.at(poses)
     for found in (posture.actuator_forces(np.ones(6)), posture.wrench(np.ones(6))):
         assert np.isfinite(found[0]).all()
@@ -249,7 +249,7 @@ def test_forces_where_a_drive_is_singular():
 
 def test_an_anchor_on_the_axis_of_a_crank_is_undefined():
     """Every angle has the same distance there."""
-    design, _ = stalling("crank")
+    design, _ = around_dead_centres("crank")
     posture = design.at(Pose([0.0, 3.0, 0.0]))
     assert "on the axis" in posture.undefined[0].reason
     reached = design.replace(legs=[Crank(arm=[3, 0, 0], rod=5.0), *design.legs[1:]])
@@ -260,14 +260,14 @@ def test_an_anchor_on_the_axis_of_a_crank_is_undefined():
 @pytest.mark.parametrize("shift", [1e-3, 1e-6, 1e-9])
 def test_rows_near_a_singular_drive_are_large_and_right(shift):
     """q = x − sqrt(ℓ² − z²), and dq/dz = z/(x − q): with ℓ = 3, z = 3 − shift."""
-    design, _ = stalling("slider")
+    design, _ = around_dead_centres("slider")
     z = 3.0 - shift
     root = np.sqrt((3.0 - z) * (3.0 + z))
     posture = design.at(Pose([0.3, 0.0, z]))
     assert np.isclose(posture.joints[0], 0.3 - root, rtol=0, atol=1e-12)
     expected = [1.0, 0.0, z / root, 0.0, 0.0, 0.0]
     assert np.allclose(posture.jacobian[0], expected, rtol=1e-6)
-    assert not posture.stalls.any()
+    assert not posture.drive_is_singular.any()
 
 
 # --- records, files, errors ---

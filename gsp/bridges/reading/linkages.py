@@ -1,4 +1,4 @@
-"""Links and joints of a model file, as all readers hand them over: `Linkage`.
+"""Links and joints of a model file, as all readers return them: `Linkage`.
 
 Everything is in metres and in the axes of the world, in the configuration in which the file has
 its links.

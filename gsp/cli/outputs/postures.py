@@ -52,7 +52,7 @@ def warn_of(posture: Posture, where: str = "") -> None:
     """Print the joints of a posture that are undefined, singular or beyond strokes, and where."""
     for element in posture.undefined:
         warn(f"{where}{element.joint} is undefined: {element.reason}")
-    for drive in posture.stalled:
+    for drive in posture.singular_drives:
         warn(f"{where}the drive {drive.joint} is singular: {drive.reason}")
     beyond = [
         name

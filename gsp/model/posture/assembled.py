@@ -42,7 +42,7 @@ class Undefined(NamedTuple):
     reason: str
 
 
-class Stalled(NamedTuple):
+class SingularDrive(NamedTuple):
     """A drive of a posture that is singular, and why: the row of its joint is infinite.
 
     Attributes

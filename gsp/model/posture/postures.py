@@ -11,7 +11,7 @@ import numpy as np
 from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
-from gsp.model.posture.assembled import Stalled
+from gsp.model.posture.assembled import SingularDrive
 from gsp.model.posture.assembly import put
 from gsp.model.posture.evaluated import Evaluated
 
@@ -97,7 +97,7 @@ class Posture(Evaluated):
         angles [1/unit, 1]. *Source: TozKucuk2016, eqs. (8), (12)–(16)*
 
     NaN marks an element that is not defined; `undefined` gives the reason. The row of a drive at
-    the base that is singular is infinite; `stalled` gives the reason.
+    the base that is singular is infinite; `singular_drives` gives the reason.
     """
 
     design: Design
@@ -116,7 +116,7 @@ class Posture(Evaluated):
         return self._of_drives(lambda driven: driven.scale, 1.0)
 
     @kept_property
-    def stalls(self) -> Mask:
+    def drive_is_singular(self) -> Mask:
         """Which drives at the base are singular, shape (..., n): their rates have no bound.
 
         *Source: the first kind of singularity of Gosselin and Angeles (1990); docs/drives.md*
@@ -125,19 +125,19 @@ class Posture(Evaluated):
         return np.asarray(regular == 0.0)
 
     @property
-    def stalled_poses(self) -> Mask:
+    def poses_of_singular_drives(self) -> Mask:
         """Where a drive at the base is singular, and all legs are defined, shape (...).
 
         *Source: ours; docs/drives.md*
         """
-        return np.asarray(self.stalls.any(axis=-1) & self.defined)
+        return np.asarray(self.drive_is_singular.any(axis=-1) & self.defined)
 
     @property
-    def stalled(self) -> tuple[Stalled, ...]:
+    def singular_drives(self) -> tuple[SingularDrive, ...]:
         """The drives at the base that are singular, each with pose, joint and reason."""
         return tuple(
-            Stalled(pose, joint, constraint.stalled)
-            for pose, joint, constraint in self._named(self.stalls)
+            SingularDrive(pose, joint, constraint.singular)
+            for pose, joint, constraint in self._named(self.drive_is_singular)
         )
 
     def _of_drives(self, measure: Callable[[Driven], Any], other: float) -> Array:
