@@ -26,6 +26,11 @@ from gsp.variation.legs import KINDS, Kind
 SHORTEST_TRAVEL_STEP = 1e-9
 # Default search distance, at the speed of the start, in the same units.
 DEFAULT_DISTANCE = 10.0
+# Bound of the way of the centre within it, in sizes of the design. Steps are about 0.1 sizes long;
+# turns by 10 rad about an origin within 6 sizes of the centre are shorter, whatever the direction.
+DEFAULT_WAY = 100.0
+# Halvings of the interval in which the default is sought: all digits of a double.
+DEFAULT_HALVINGS = 64
 # Least and greatest number that the largest component of a direction may be.
 DIRECTION = (1e-100, 1e100)
 # By how much a value may pass its bound, in the same units, to count as on it.
@@ -42,14 +47,17 @@ class Travel(ReadOnly):
         Factor of the direction; to its end no limit is violated.
     limit : str
         What ends it: a joint and its bound ("d3 = 140"), "singular" (det J = 0 or an undefined
-        leg), or "" if nothing does up to the greatest distance.
+        leg), or "" if nothing does up to `farthest`.
     pose : Pose of batch shape ()
         At the end.
+    farthest : float [1]
+        Greatest factor, up to which limits were searched: the argument or its default.
     """
 
     distance: float
     limit: str
     pose: Pose
+    farthest: float
 
 
 def travel(
@@ -72,9 +80,6 @@ def travel(
     ‖J⁻¹‖ (dimensionless, Frobenius) exceeds 7e6, at which a posture counts as singular in
     double precision.
 
-    About a far origin a turn moves the anchors on a long curve. The steps stay as short as beside
-    the anchors, so without strokes give `farthest`: the default may take minutes.
-
     Parameters
     ----------
     design : Design
@@ -88,7 +93,11 @@ def travel(
         the design.
     farthest : float or None [1]
         Greatest factor; default the one that moves the centre of the anchors by 10 sizes of the
-        design, at its speed at the start, or the platform by 10 rad.
+        design, at its speed at the start, or the platform by 10 rad. The default is less for
+        turns about a far origin, where the centre moves on a long curve: its way is at most 100
+        sizes, by the bound ∫ (|v₀| + 2 |ω| a |sin(|ω| s / 2)|) ds of its length, with v₀ its
+        velocity at the start and a its distance from the axis through the platform origin. With a
+        given `farthest` the time grows with the way, about 10 to 30 steps per size.
 
     Returns
     -------
@@ -113,10 +122,11 @@ def travel(
     small = centred(design)
     path = _Path.of(small, start, twist)
     rate = path.rate
-    most = DEFAULT_DISTANCE if farthest is None else check_positive("farthest", farthest) * rate
+    most = path.default if farthest is None else check_positive("farthest", farthest) * rate
     done, number = _March(small, path, bounds / small.units[:, None]).go(most)
     end = start.moved(twist * (done / rate))
-    return Travel(distance=done / rate, limit=_name(design, number, bounds), pose=end)
+    limit = _name(design, number, bounds)
+    return Travel(distance=done / rate, limit=limit, pose=end, farthest=most / rate)
 
 
 def _name(design: Design, number: int, bounds: Array) -> str:
@@ -189,6 +199,26 @@ class _Path(ReadOnly):
 
     def _arm(self, distance: float) -> Array:
         return np.asarray(exp3(distance * self.twist[3:]) @ self.arm)
+
+    @property
+    def default(self) -> float:
+        """Greatest distance to search where none is given."""
+        least, most = 0.0, DEFAULT_DISTANCE
+        if self._way(most) <= DEFAULT_WAY:
+            return most
+        for _ in range(DEFAULT_HALVINGS):
+            middle = 0.5 * (least + most)
+            least, most = (middle, most) if self._way(middle) <= DEFAULT_WAY else (least, middle)
+        return least
+
+    def _way(self, distance: float) -> float:
+        """Return a bound of the length of the curve of the centre up to a distance."""
+        turn = float(norm(self.twist[3:]))
+        half_turns, rest = divmod(0.5 * turn * distance, np.pi)
+        # The integral of |sin| from 0, with 1 − cos written without cancellation.
+        sines = 2.0 * half_turns + 2.0 * np.sin(0.5 * rest) ** 2
+        across = float(norm(np.cross(self.twist[3:], self.arm))) / turn if turn else 0.0
+        return distance * float(norm(self.velocity(0.0)[:3])) + 4.0 * across * float(sines)
 
     @property
     def curved(self) -> float:

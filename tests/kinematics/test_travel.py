@@ -5,6 +5,7 @@ import pytest
 
 import gsp
 from gsp.catalogue import instantiate, mechanisms
+from gsp.geometry.vectors import unit
 
 TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 
@@ -121,6 +122,44 @@ def test_the_platform_origin_may_be_far_from_the_anchors(away, turning):
         assert found.distance == pytest.approx(near.distance, rel=1e-9)
     rough = scanned(design, design.home, twist, strokes, 1.2 * found.distance)
     assert 0 <= rough - found.distance <= 1.2 * found.distance / 4000 * (1 + 1e-6)
+
+
+def length_of_curve(design, pose, twist, most, number=20_001):
+    """Length of the curve of the centre of the platform anchors, from chords."""
+    poses = pose.moved(np.linspace(0.0, most, number)[:, None] * twist)
+    points = poses.position + poses.rotation @ design.platform_points.mean(axis=0)
+    return np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
+
+
+@pytest.mark.parametrize("away", [1e4, 1e7])
+def test_the_default_is_a_short_way_about_a_far_origin(away):
+    """The centre starts at rest, so ten of its speeds would be a turn by 10 rad."""
+    size, w = TEMPLATE.rms_radius, np.array([0.1, 1.0, 0.3])
+    design = TEMPLATE.with_origin(size * away * np.array([0.6, 0.2, 0.5]))
+    arm = design.home.rotation @ design.platform_points.mean(axis=0)
+    twist = np.array([*-np.cross(w, arm), *w])
+    found = gsp.travel(design, design.home, twist)
+    way = length_of_curve(design, design.home, twist, found.farthest)
+    assert 80 * size < way < 100 * size
+    assert found.limit == "singular"
+    assert found.distance < found.farthest
+    given = gsp.travel(design, design.home, twist, farthest=1e-6)
+    assert (given.distance, given.limit, given.farthest) == (1e-6, "", 1e-6)
+
+
+def test_the_default_of_ordinary_origins_is_ten_sizes_or_radians():
+    size, rng = TEMPLATE.rms_radius, np.random.default_rng(8)
+    joints = TEMPLATE.at(TEMPLATE.home).joints
+    for away in (0.0, 6.0):
+        point = TEMPLATE.platform_points.mean(axis=0) - away * size * unit(rng.normal(size=3))
+        design = TEMPLATE.with_origin(point)
+        twist = rng.normal(size=6) * np.repeat([size, 1.0], 3)
+        arm = design.home.rotation @ design.platform_points.mean(axis=0)
+        speed = np.linalg.norm(twist[:3] + np.cross(twist[3:], arm)) / size
+        strokes = np.stack((joints - 0.02 * size, joints + 0.02 * size), axis=1)
+        found = gsp.travel(design, design.home, twist, strokes=strokes)
+        fastest = max(speed, np.linalg.norm(twist[3:]))
+        assert found.farthest == pytest.approx(10.0 / fastest, rel=1e-12)
 
 
 @pytest.mark.parametrize("factor", [1e-100, 1e-30, 1e30, 1e98])
