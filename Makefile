@@ -5,6 +5,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
+# Byte code is made when a module is imported: of all files, as pip does, it takes half of the time.
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --no-compile
 
 .PHONY: rank help test compiled check-long matrix docs notebooks hooks lint bench proof pictures
 
@@ -18,17 +20,17 @@ help:
 
 ## set up .venv, check style and types, run the tests
 test:
-	$(MAKE) -j3 lint compiled
+	$(MAKE) -j3 compiled lint
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
-# Compiled functions in the cache, in two parts while types are checked: each takes one to two minutes
-# on one core. Then the byte code of the tests, which in a fresh clone each process of pytest would
-# make by itself. What cannot be collected is reported by the tests.
+# Compiled functions in the cache, in two parts while tools are installed and types are checked: each
+# takes one to two minutes on one core. Then the byte code of the tests, which in a fresh clone each
+# process of pytest would make by itself. What cannot be collected is reported by the tests.
 ## compile what numba caches, and the byte code of the tests
-compiled: compiled-proofs compiled-workspaces
+compiled: compiled-proofs compiled-workspaces $(VENV)/.tools
 	-$(BIN)/python -m pytest --collect-only --quiet > /dev/null
 
-compiled-%: $(VENV)/.tools
+compiled-%: $(VENV)/.installed
 	$(BIN)/python -m tests.compile $*
 
 ## every check, with the whole campaigns of thousands of designs (hours)
@@ -65,7 +67,7 @@ build/matrix/$(MATRIX).passed: pyproject.toml tests/lowest.txt
 
 ## run the checks of `make lint` before every commit
 hooks: $(VENV)/.tools
-	$(BIN)/python -m pip install --quiet pre-commit
+	$(PIP_INSTALL) pre-commit
 	$(BIN)/pre-commit install
 
 # A warning is an error. Results are kept in build/website.
@@ -102,13 +104,13 @@ $(BIN)/pip:
 	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
 
 $(VENV)/.installed: pyproject.toml | $(BIN)/pip
-	$(BIN)/python -m pip install --quiet --editable ".[all]"
+	$(PIP_INSTALL) --editable ".[all]"
 	touch $@
 
 $(VENV)/.tools: pyproject.toml $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet --group dev
+	$(PIP_INSTALL) --group dev
 	touch $@
 
 $(VENV)/.docs: pyproject.toml $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet --group docs
+	$(PIP_INSTALL) --group docs
 	touch $@

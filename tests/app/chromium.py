@@ -16,6 +16,8 @@ FLAGS = (
     "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
     "--hide-scrollbars", "--no-first-run", "--remote-debugging-port=0", "about:blank",
 )  # fmt: skip
+# Dots that are rendered for a pixel of the layout.
+DOTS = 0.4
 
 # How many colours the scene has: it is drawn anew, as its canvas keeps no picture.
 COLOURS = """new Promise(done => requestAnimationFrame(() => {
@@ -99,6 +101,23 @@ class Tab:
         )
         assert "exceptionDetails" not in answer, answer
         return answer["result"].get("value")
+
+    async def resize(self, width, height):
+        """Show the page in so many pixels; of a narrow one, as a phone does.
+
+        Pictures are rendered with fewer dots, as this has no effect on the layout and WebGL without
+        a graphics processor takes most of the time.
+        """
+        await self.send(
+            "Emulation.setDeviceMetricsOverride",
+            width=width, height=height, deviceScaleFactor=DOTS, mobile=width < 600,
+        )  # fmt: skip
+
+    async def still(self):
+        """Wait until transitions have ended."""
+        moving = "document.getAnimations().some((one) => one.playState === 'running')"
+        classes = "[class*=-enter-active], [class*=-leave-active]"
+        await self.until(f"!{moving} && !document.querySelector('{classes}')")
 
     async def until(self, script, seconds=30.0):
         """Wait until a script has a value that counts as true, and return it."""
@@ -226,10 +245,7 @@ async def tabs(port, downloads):
         seen.append(tab)
         for part in ("Runtime", "Log", "Network", "Page", "DOM", "Accessibility"):
             await tab.send(f"{part}.enable")
-        await tab.send(
-            "Emulation.setDeviceMetricsOverride",
-            width=width, height=height, deviceScaleFactor=1, mobile=width < 600,
-        )  # fmt: skip
+        await tab.resize(width, height)
         await tab.send("Page.navigate", url=address)
         return tab
 

@@ -78,7 +78,7 @@ async def unnamed(tab):
 
 
 async def check(tab):
-    await asyncio.sleep(0.4)  # transitions of colours
+    await tab.still()
     assert await unnamed(tab) == []
     found = await tab.run(FAINT)
     assert found["faint"] == []
@@ -88,10 +88,7 @@ async def check(tab):
 @pytest.mark.parametrize("width", [1366, 390])
 def test_names_and_contrast(visit, width):
     async def work(tab):
-        await tab.send(
-            "Emulation.setDeviceMetricsOverride",
-            width=width, height=800, deviceScaleFactor=1, mobile=width < 600,
-        )  # fmt: skip
+        await tab.resize(width, 800)
         assert await check(tab) > 40
         for name in ("Legs", "Indices", "Plots", "Catalogue"):
             await tab.click("tab", name)
@@ -120,10 +117,7 @@ def test_on_a_phone_the_scene_stays_in_view(visit):
     """Above the sliders, and it covers no control that has the focus."""
 
     async def work(tab):
-        await tab.send(
-            "Emulation.setDeviceMetricsOverride",
-            width=390, height=800, deviceScaleFactor=1, mobile=True,
-        )  # fmt: skip
+        await tab.resize(390, 800)
         await tab.send("Page.bringToFront")
         boxes = (
             "[document.querySelector('.gsp-scene canvas'), document.activeElement]"

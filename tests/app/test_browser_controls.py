@@ -31,10 +31,7 @@ def value(name):
 
 async def phone(tab):
     """Make the tab that of a phone with a touch screen."""
-    await tab.send(
-        "Emulation.setDeviceMetricsOverride",
-        width=390, height=844, deviceScaleFactor=1, mobile=True,
-    )  # fmt: skip
+    await tab.resize(390, 844)
     await tab.send("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
     await tab.send("Page.reload")  # pages look for touch screens when they are loaded
     for _ in range(600):
@@ -242,7 +239,7 @@ def test_an_accessibility_checker_finds_nothing(visit):
 
     async def work(tab):
         async def check():
-            await asyncio.sleep(0.4)  # transitions of colours
+            await tab.still()
             assert await tab.run(AXE) == []
 
         await tab.run(f"{script};0")

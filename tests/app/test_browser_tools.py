@@ -49,10 +49,7 @@ CUT = """(() => {
 @pytest.mark.parametrize("width", [1366, 390])
 def test_all_assembly_modes_are_in_the_picture(visit, width):
     async def work(tab):
-        await tab.send(
-            "Emulation.setDeviceMetricsOverride",
-            width=width, height=800, deviceScaleFactor=1, mobile=width < 600,
-        )  # fmt: skip
+        await tab.resize(width, 800)
         before = "document.querySelector('.gsp-label-number').style.transform"
         await tab.click("tab", "Legs")
         await asyncio.sleep(0.5)
