@@ -12,7 +12,7 @@ mapped = gsp.workspace.section(
     design,
     limits=upper,
     axes=[[0, 0, 1], [1, 0, 0]],
-    rays=np.deg2rad([20.0, 60.0]),
+    rays=rays,
     starts=3,
     rng=1,
 )
