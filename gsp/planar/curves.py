@@ -10,7 +10,6 @@ import numpy as np
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, frozen, norm
 from gsp.limits.labels import Active
-from gsp.workspace.exact.discs import SHORTEST_CHORD
 from gsp.workspace.exact.spheres import SAME_TOLERANCE, common_chord
 
 # Longest step between drawn points of a circle [rad], and the least number of them.
@@ -47,7 +46,10 @@ class Curve(ReadOnly):
     def of_limit(
         cls, centre: Array, normal: Array, reach: float, key: tuple[int, int]
     ) -> list[Curve]:
-        """Return the circle, or the two lines, on which a leg has a length."""
+        """Return the circle, or the two lines, on which a leg has a length.
+
+        The point of a line is the foot of the origin on it.
+        """
         inward = 1.0 if key[1] == 0 else -1.0
         if not normal.any():
             return [cls(centre, reach, np.zeros(2), -inward, (key,))]
@@ -55,7 +57,13 @@ class Curve(ReadOnly):
         for side in (1.0, -1.0):
             left = inward * side * normal
             lines.append(
-                cls(centre + side * reach * normal, 0.0, np.array([left[1], -left[0]]), 0.0, (key,))
+                cls(
+                    (centre @ normal + side * reach) * normal,
+                    0.0,
+                    np.array([left[1], -left[0]]),
+                    0.0,
+                    (key,),
+                )
             )
         return lines
 
@@ -67,6 +75,23 @@ class Curve(ReadOnly):
     def with_limits(self, active: Active) -> Curve:
         """Return the curve for more limits."""
         return replace(self, active=tuple(sorted({*self.active, *active})))
+
+    def moved(self, far: float) -> Curve:
+        """Return the curve moved to its feasible side, so that its side becomes smaller."""
+        if self.closed:
+            return replace(self, radius=self.radius - self.turn * far)
+        return replace(self, point=self.point + far * self.left)
+
+    @property
+    def left(self) -> Array:
+        """The normal (2,) of a line on its feasible side."""
+        return np.array([-self.along[1], self.along[0]])
+
+    def margin(self, points: Array) -> Array:
+        """Return how far points (..., 2) are on the feasible side, negative on the other."""
+        if self.closed:
+            return np.asarray(self.turn * (self.radius - norm(points - self.point)))
+        return np.asarray((points - self.point) @ self.left)
 
     def at(self, parameter: float | Array) -> Array:
         """Return points (..., 2) at parameters: an angle in its direction, or a length."""
@@ -122,28 +147,29 @@ class Curve(ReadOnly):
         return total
 
 
-def same_curve(one: Curve, other: Curve, slack: float) -> int:
-    """Return whether two curves are the same up to a slack [length]: 1, opposite ones −1, or 0."""
-    if one.closed != other.closed:
-        return 0
+def same_curve(one: Curve, other: Curve, slack: float) -> bool:
+    """Return whether two curves with one side are the same up to a slack [length].
+
+    Lines are compared where positions are, near the origin: each has its foot as its point.
+    """
+    if one.closed != other.closed or one.turn != other.turn:
+        return False
     offset = other.point - one.point
     if one.closed:
-        apart = float(norm(offset)) + abs(one.radius - other.radius)
-        return int(np.sign(one.turn * other.turn)) if apart <= slack else 0
+        return float(norm(offset)) + abs(one.radius - other.radius) <= slack
     sine = one.along[0] * other.along[1] - one.along[1] * other.along[0]
-    apart = abs(one.along[0] * offset[1] - one.along[1] * offset[0])
-    same = abs(sine) <= SAME_TOLERANCE and apart <= slack
-    return int(np.sign(one.along @ other.along)) if same else 0
+    near = float(norm(offset)) <= slack and abs(sine) <= SAME_TOLERANCE
+    return bool(near and one.along @ other.along > 0.0)
 
 
 def crossings(one: Curve, other: Curve) -> list[Array]:
-    """Return the points (2,) where two curves cross: none where they only touch.
+    """Return the points (2,) where two curves cross: none, one of two lines, or two.
 
-    Both curves use these points, so that their pieces meet.
+    Two are in the same order for curves that are moved by `Curve.moved`.
     """
     if not one.closed and not other.closed:
         sine = one.along[0] * other.along[1] - one.along[1] * other.along[0]
-        if abs(sine) <= SAME_TOLERANCE:
+        if sine == 0.0:
             return []
         x, y = other.point - one.point
         return [one.point + (x * other.along[1] - y * other.along[0]) / sine * one.along]
@@ -152,18 +178,44 @@ def crossings(one: Curve, other: Curve) -> list[Array]:
     if other.closed:
         offset = other.point - one.point
         gap = float(norm(offset))
-        smaller = min(one.radius, other.radius)
-        if gap <= SAME_TOLERANCE * max(one.radius, other.radius):
+        if gap == 0.0:
             return []
         along, square = common_chord(np.float64(gap), one.radius, other.radius)  # type: ignore[arg-type]
         foot, chord = one.point + along * offset / gap, offset / gap
         chord = np.array([-chord[1], chord[0]])
     else:
-        smaller, chord = one.radius, other.along
+        chord = other.along
         foot = other.point + ((one.point - other.point) @ chord) * chord
         far = float(norm(foot - one.point))
         square = np.asarray((one.radius - far) * (one.radius + far))
-    if not square > (SHORTEST_CHORD * smaller) ** 2:
+    if not square > 0.0:
         return []
     half = np.sqrt(square)
     return [foot + half * chord, foot - half * chord]
+
+
+def touching(one: Curve, other: Curve) -> tuple[float, Array]:
+    """Return by how much two curves overlap, and the point (2,) where they are nearest.
+
+    At least one of them is a circle. An overlap [length] is negative if they are apart, and the
+    point is in the middle between them; NaN if no direction is defined.
+    """
+    if not one.closed:
+        one, other = other, one
+    if not other.closed:
+        foot = other.point + ((one.point - other.point) @ other.along) * other.along
+        gap = float(norm(foot - one.point))
+        overlap, reach, toward = one.radius - gap, 0.5 * (one.radius + gap), foot - one.point
+    else:
+        toward = other.point - one.point
+        gap = float(norm(toward))
+        r, s = one.radius, other.radius
+        outside, inside = r + s - gap, gap - abs(r - s)
+        overlap = min(outside, inside)
+        if outside <= inside:
+            reach = 0.5 * (r + gap - s)
+        else:
+            reach = 0.5 * (r + gap + s if r >= s else gap - r - s)
+    if gap == 0.0:
+        return overlap, np.full(2, np.nan)
+    return overlap, one.point + reach / gap * toward

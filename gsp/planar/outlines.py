@@ -2,14 +2,14 @@
 
 A D1 leg keeps the platform origin in a ring, a D2 or D3 leg in one strip or two, and an A1 leg
 allows an angle or not. So the boundary consists of pieces of circles and lines between the points
-where these cross, and nothing is approximated. Every piece has the workspace on its left.
+where these cross or touch, and nothing is approximated. Every piece has the workspace on its left.
+What is connected is decided once, with PART_TOLERANCE, in `gsp.planar.arrangement`.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,20 +19,25 @@ from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active
-from gsp.planar.allowed import Legs
+from gsp.planar.allowed import CENTRE_ROUNDING, Legs, Limits
+from gsp.planar.arrangement import CONTACT_TRIES, Link, Loop, restored, shrunk, traced
 from gsp.planar.bounds import planar_bounds
-from gsp.planar.curves import Curve, crossings
+from gsp.planar.curves import Curve
 from gsp.planar.design import PlanarDesign
 from gsp.workspace.exact.spheres import SAME_TOLERANCE
 
-# How near crossings are one point, as shorter pieces are, and how near curves are one [shares of
-# the size]: where curves touch, half the digits are lost. Curves that nearly touch or coincide may
-# form no closed loops with the first pair; the first pair that closes all of them is taken.
-NEAR = ((1e-7, SAME_TOLERANCE), (1e-5, SAME_TOLERANCE), (1e-6, 1e-8), (1e-5, 1e-7), (1e-4, 1e-6))
-# Where pieces are tested [shares of their length]. Others may touch a curve there.
+# Passages narrower than this are closed, narrower parts are none, and curves nearer than it are one
+# [share of the size: the greatest radius of the circles among which the positions are].
+PART_TOLERANCE = SAME_TOLERANCE
+# Where pieces are tested [shares of their length].
 TESTED_SHARES = np.array([0.21, 0.48, 0.83])
+# Gaps between pieces that are rounding [share of the size].
+JOINED = 1e-14
 # What is expected of curves that do not form outlines.
-DISTINCT = "limits whose curves coincide, or differ by more than rounding"
+DISTINCT = "limits whose curves form closed outlines"
+
+# A piece of a boundary: its curve, and the parameters of its ends.
+Arc = tuple[Curve, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +77,9 @@ class PlanarComponent(ReadOnly):
     area: float
     outline: tuple[Piece, ...]
     holes: tuple[tuple[Piece, ...], ...]
-    _loops: tuple[tuple[tuple[Curve, float, float], ...], ...]
+    _loops: tuple[tuple[Arc, ...], ...]
+    _middle: Array
+    _unit: float
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -98,7 +105,7 @@ class PlanarComponent(ReadOnly):
 
         *Source: ours*
         """
-        points = check_array("position", position, (2,))
+        points = (check_array("position", position, (2,)) - self._middle) / self._unit
         turns = sum(_winding(loop, points) for loop in self._loops)
         return np.asarray(np.abs(turns) > 0.5)
 
@@ -106,9 +113,11 @@ class PlanarComponent(ReadOnly):
 def planar_components(design: PlanarDesign, angle: float = 0.0) -> tuple[PlanarComponent, ...]:
     """Return all parts of the workspace of a planar platform at a fixed angle, the largest first.
 
-    Parts and gaps smaller than 1e-7 of the size may be missed. Parts that only touch are separate
-    where curves cross; between curves that are tangent there, rounding decides whether they are one
-    part. Their total area and `contains` do not depend on it.
+    The workspace is what is within the limits, without its boundary: parts that touch in points are
+    separate, and a hole that touches the outline from inside is part of it. What is narrower than a
+    tolerance counts as nothing, whether it is a passage between parts or a part, and curves nearer
+    than it are one. The tolerance is 1e-9 of the size, the greatest radius of the circles that meet
+    a disc around the workspace; what is wider than 1.25e-9 of it counts.
 
     Parameters
     ----------
@@ -128,9 +137,10 @@ def planar_components(design: PlanarDesign, angle: float = 0.0) -> tuple[PlanarC
         Without strokes.
     InvalidInput
         If the strokes do not bound the positions: neither a D1 leg with a greatest length, nor two
-        legs whose lines have different directions; or on arguments of other types.
+        legs whose lines are more than 1e-9 rad from parallel; or on arguments of other types.
     GspError
-        If curves that nearly touch or coincide form no closed outlines.
+        If curves form no closed outlines, as two of them touch up to rounding in each of the
+        8 ways in which contacts are decided.
 
     Examples
     --------
@@ -150,156 +160,91 @@ def planar_components(design: PlanarDesign, angle: float = 0.0) -> tuple[PlanarC
     if turn.ndim:
         raise InvalidInput(expected("angle", "one angle", f"shape {turn.shape}"))
     legs = Legs.of(design, bounds, float(turn))
-    if not legs.bounded:
-        wanted = "a D1 leg with a greatest length, or legs with lines of two directions"
+    if legs.disc is None:
+        wanted = "a D1 leg with a greatest length, or two with lines at least 1e-9 rad apart"
         raise InvalidInput(expected("strokes", wanted, "positions without bounds"))
     return components(legs)
 
 
 def components(legs: Legs) -> tuple[PlanarComponent, ...]:
     """Return the components that legs allow at a fixed angle, the largest first."""
-    if not legs.possible:
+    if not legs.possible or legs.disc is None:
         return ()
-    for near, slack in NEAR:
-        loops = _loops(_pieces(legs, near * legs.size, slack * legs.size))
-        parts = None if loops is None else _parts(loops, legs, (near * legs.size) ** 2)
-        if parts is not None:
-            return parts
-    raise GspError(expected("strokes", DISTINCT, "curves whose pieces form no closed outlines"))
+    middle, radius = legs.disc
+    legs = legs.scaled(middle, radius)
+    size = legs.size(1.0)
+    legs, radius, unit = legs.scaled(np.zeros(2), size), 1.0 / size, radius * size
+    limits = legs.limits(radius, PART_TOLERANCE)
+    for attempt in range(CONTACT_TRIES):
+        narrow = None if limits is None else shrunk(limits, PART_TOLERANCE, attempt)
+        if limits is None or narrow is None:
+            return ()
+        found = traced(narrow)
+        nested = None if found is None else _nested(found[0], narrow)
+        if found is not None and nested is not None:
+            rounding = legs.rounding + CENTRE_ROUNDING
+            loops = restored(*found, limits, PART_TOLERANCE, rounding)
+            made = (_component([loops[i] for i in own], limits, middle, unit) for own in nested)
+            return tuple(sorted(made, key=lambda part: -part.area))
+    raise GspError(expected("strokes", DISTINCT, "some that do not"))
 
 
-# A piece: its curve, the parameters of its ends, and the numbers of its vertices.
-Link = tuple[Curve, float, float, int | None, int | None]
-Loop = list[Link]
+def _nested(loops: list[Loop], limits: Limits) -> list[list[int]] | None:
+    """Return the numbers of the loops of each part, the outline first; None without outline."""
+    arcs = [_arcs(loop, limits) for loop in loops]
+    area = [_area(loop) for loop in arcs]
+    outer = sorted((i for i in range(len(loops)) if area[i] > 0.0), key=lambda i: -area[i])
+    parts: dict[int, list[int]] = {i: [i] for i in outer}
+    for i in sorted(set(range(len(loops))) - set(outer), key=lambda i: area[i]):
+        curve, start, stop = arcs[i][0]
+        there = curve.at(start + TESTED_SHARES * (stop - start))
+        around = [k for k in outer if np.median(_winding(arcs[k], there)) > 0.5]
+        if not around:
+            return None
+        # The smallest of them: outer loops are in descending order.
+        parts[around[-1]].append(i)
+    return list(parts.values())
 
 
-def _parts(loops: list[Loop], legs: Legs, least: float) -> tuple[PlanarComponent, ...] | None:
-    """Return the components of loops, without those of at most a least area; None without outline.
-
-    Where curves touch up to rounding, loops around nothing are between them.
-    """
-    middle = legs.centre.mean(axis=0)
-    known = sorted(((_area(loop, middle), loop) for loop in loops), key=lambda item: -item[0])
-    outer = [(area, loop) for area, loop in known if area > least]
-    inner: dict[int, list[tuple[float, Loop]]] = defaultdict(list)
-    for area, loop in known:
-        if area < -least:
-            curve, start, stop, *_ = loop[0]
-            # Most of three points, as a hole may touch the outline in one of them.
-            there = curve.at(start + TESTED_SHARES * (stop - start))
-            turns = [np.median(_winding(_plain(around), there)) for _, around in outer]
-            around = [i for i, turn in enumerate(turns) if turn > 0.5]
-            if not around:
-                return None
-            # The smallest of them: outer loops are in descending order.
-            inner[around[-1]].append((area, loop))
-    made = [_component(area, loop, inner[i]) for i, (area, loop) in enumerate(outer)]
-    return tuple(sorted(made, key=lambda part: -part.area))
+def _arcs(loop: Loop, limits: Limits) -> tuple[Arc, ...]:
+    return tuple((limits.curves[link.curve], link.start, link.stop) for link in loop)
 
 
-def _pieces(legs: Legs, near: float, slack: float) -> list[Link]:
-    """Return the pieces of all curves that bound the workspace.
-
-    Crossings within `near` are one point, and curves within `slack` are one [length].
-    """
-    curves = legs.curves(slack)
-    vertices: list[Array] = []
-    on: list[dict[int, float]] = [{} for _ in curves]
-    for i, j in combinations(range(len(curves)), 2):
-        for point in crossings(curves[i], curves[j]):
-            if not legs.allow(point[None], near)[0]:
-                continue
-            same = (k for k, other in enumerate(vertices) if norm(other - point) <= near)
-            number = next(same, len(vertices))
-            if number == len(vertices):
-                vertices.append(point)
-            for k in (i, j):
-                on[k].setdefault(number, curves[k].parameter(vertices[number]))
-    found = []
-    for curve, ends in zip(curves, on, strict=True):
-        for link in _between(curve, ends):
-            tested = link[1] + TESTED_SHARES * (link[2] - link[1])
-            points = np.stack([curve.at(t) for t in tested])
-            if legs.allow(points, slack).all():
-                found.append(link)
-    return found
+def _gaps(arcs: Sequence[Arc]) -> list[tuple[Array, Array]]:
+    """Return the straight gaps between the pieces of a loop: from an end to the next start."""
+    ends = [curve.at(stop) for curve, _, stop in arcs]
+    starts = [curve.at(start) for curve, start, _ in (*arcs[1:], arcs[0])]
+    pairs = zip(ends, starts, strict=True)
+    return [(end, start) for end, start in pairs if norm(start - end) > JOINED]
 
 
-def _between(curve: Curve, ends: dict[int, float]) -> list[Link]:
-    """Return the pieces of a curve between its vertices, in its direction."""
-    order = sorted(ends, key=lambda number: ends[number])
-    if not curve.closed:
-        pairs = list(pairwise(order))
-        return [(curve, ends[a], ends[b], a, b) for a, b in pairs]
-    period = 2.0 * np.pi
-    if not order:
-        return [(curve, 0.0, period, None, None)]
-    pairs = list(zip(order, [*order[1:], order[0]], strict=True))
-    stops = [ends[b] for _, b in pairs[:-1]] + [ends[order[0]] + period]
-    return [(curve, ends[a], stop, a, b) for (a, b), stop in zip(pairs, stops, strict=True)]
-
-
-def _loops(links: list[Link]) -> list[Loop] | None:
-    """Join pieces at their ends; None if some form no closed loop.
-
-    Where more than two pieces meet, parts of the workspace are separated.
-    """
-    leaving: dict[int | None, list[Link]] = defaultdict(list)
-    for link in links:
-        leaving[link[3]].append(link)
-    loops: list[Loop] = [[link] for link in leaving.pop(None, [])]
-    while any(leaving.values()):
-        loop = [next(way for way in leaving.values() if way).pop()]
-        while loop[-1][4] != loop[0][3]:
-            choices = leaving[loop[-1][4]]
-            if not choices:
-                return None
-            best = max(choices, key=lambda link: _left_turn(loop[-1], link))
-            choices.remove(best)
-            loop.append(best)
-        loops.append(loop)
-    return loops
-
-
-def _left_turn(before: Link, after: Link) -> float:
-    """Return by how much a path turns to the left from one piece to the next, plus π/2 [rad].
-
-    A corner of the workspace has an angle between 0 and π, as each limit alone leaves a half-plane
-    there, so what is negative is 0, or π where curves touch, up to rounding.
-    """
-    u, v = before[0].direction(before[2]), after[0].direction(after[1])
-    return float((np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v) + 0.5 * np.pi) % (2.0 * np.pi))
-
-
-def _plain(loop: Loop) -> tuple[tuple[Curve, float, float], ...]:
-    return tuple((curve, start, stop) for curve, start, stop, *_ in loop)
-
-
-def _area(loop: Loop, origin: Array) -> float:
+def _area(arcs: Sequence[Arc]) -> float:
     """Return the area that a loop encloses, negative if it is clockwise (Green's theorem)."""
-    return sum(curve.area(start, stop, origin) for curve, start, stop, *_ in loop)
+    gaps = sum(0.5 * float(a[0] * b[1] - a[1] * b[0]) for a, b in _gaps(arcs))
+    return gaps + sum(curve.area(start, stop, np.zeros(2)) for curve, start, stop in arcs)
 
 
-def _winding(loop: tuple[tuple[Curve, float, float], ...], points: Array) -> Array:
+def _winding(arcs: Sequence[Arc], points: Array) -> Array:
     """Return how often a loop goes around points (..., 2), counter-clockwise."""
     total = np.zeros(points.shape[:-1])
-    for curve, start, stop in loop:
+    for curve, start, stop in arcs:
         total += curve.angle_seen(start, stop, points)
+    for end, following in _gaps(arcs):
+        a, b = end - points, following - points
+        total += np.arctan2(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], (a * b).sum(axis=-1))
     return total / (2.0 * np.pi)
 
 
-def _component(area: float, loop: Loop, holes: list[tuple[float, Loop]]) -> PlanarComponent:
-    inner = [hole for _, hole in holes]
-    return PlanarComponent(
-        area + sum(less for less, _ in holes),
-        _drawn(loop),
-        tuple(_drawn(hole) for hole in inner),
-        tuple(_plain(part) for part in (loop, *inner)),
+def _component(loops: list[Loop], limits: Limits, middle: Array, unit: float) -> PlanarComponent:
+    arcs = tuple(_arcs(loop, limits) for loop in loops)
+    outline, *holes = (
+        tuple(_piece(link, limits.curves[link.curve], middle, unit) for link in loop)
+        for loop in loops
     )
+    area = sum(map(_area, arcs)) * unit * unit
+    return PlanarComponent(area, outline, tuple(holes), arcs, middle, unit)
 
 
-def _drawn(loop: Loop) -> tuple[Piece, ...]:
-    return tuple(
-        Piece(curve.active, curve.drawn(start, stop), first, last)
-        for curve, start, stop, first, last in loop
-    )
+def _piece(link: Link, curve: Curve, middle: Array, unit: float) -> Piece:
+    points = middle + unit * curve.drawn(link.start, link.stop)
+    return Piece(curve.active, points, link.first, link.last)

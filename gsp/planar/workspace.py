@@ -117,7 +117,7 @@ def planar_section(
         steps = Steps(report, ahead=CLIMB_STEPS)
         orientations = _orientations(design, bounds, start, angle, starts, check_rng("rng", rng))
         ends = fan(bounds, turns, start, PLANE, phi, orientations, steps)
-        if angle is not None and (legs := Legs.of(design, bounds, float(angle))).bounded:
+        if angle is not None and (legs := Legs.of(design, bounds, float(angle))).disc is not None:
             steps.ahead = 0
             return _exact(components(legs), orientations[0], start, ends)
         corners = None

@@ -243,9 +243,8 @@ def test_positions_on_chords_of_the_boundary():
 
 def test_pieces_that_form_no_outline_are_an_error(monkeypatch):
     ring = PlanarDesign(["D1"] * 3, np.eye(3, 2), np.zeros((3, 2)), strokes=[[0.0, 1.0]] * 3)
-    pieces = outlines._pieces
-    monkeypatch.setattr(outlines, "_pieces", lambda *given: pieces(*given)[1:])
-    with pytest.raises(GspError, match=r"^strokes: expected limits .* form no closed outlines"):
+    monkeypatch.setattr(outlines, "traced", lambda limits: None)
+    with pytest.raises(GspError, match=r"^strokes: expected limits .* form closed outlines"):
         planar_components(ring)
 
 
