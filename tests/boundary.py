@@ -7,6 +7,8 @@ import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
@@ -527,14 +529,24 @@ WITHOUT_EXAMPLE = (
 )
 
 
+@cache
+def files() -> dict[str, bytes]:
+    """Return names and contents of the files that examples read."""
+    with TemporaryDirectory() as folder:
+        place = Path(folder)
+        HEXAPOD.write(place / "lift.toml")
+        gsp.bridges.export(HEXAPOD, HEXAPOD.home, "urdf", place / "lift.urdf")
+        PLANAR.write(place / "plane.toml")
+        TASK.write(place / "wish.toml")
+        HEXAPODS.write(place / "space.toml")
+        instances()["Certificate"].write(place / "certificate.json")
+        return {path.name: path.read_bytes() for path in place.iterdir()}
+
+
 def write_files() -> None:
     """Write the files that examples read into the current folder."""
-    HEXAPOD.write("lift.toml")
-    gsp.bridges.export(HEXAPOD, HEXAPOD.home, "urdf", "lift.urdf")
-    PLANAR.write("plane.toml")
-    TASK.write("wish.toml")
-    HEXAPODS.write("space.toml")
-    instances()["Certificate"].write("certificate.json")
+    for name, content in files().items():
+        Path(name).write_bytes(content)
 
 
 def call(function: Callable[..., Any], given: dict[str, Any]) -> Any:
