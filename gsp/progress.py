@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from gsp.errors import InvalidInput, brief, expected
@@ -25,6 +26,9 @@ Progress = Report | bool | None
 SECONDS_BEFORE_BAR = 1.0
 # Runs whose progress is not given to a function, the innermost last.
 _running: list[_Counter] = []
+# Number of compilations that run: each compiles the functions that it calls.
+_compiling = 0
+_compiling_lock = Lock()
 # The log of compilations, which a terminal shows where it shows a bar.
 COMPILATION = "gsp.compilation"
 
@@ -141,13 +145,25 @@ def meter(progress: Progress, label: str) -> Iterator[Report]:
         counter.close()
 
 
+def compiling(change: int) -> None:
+    """Count compilations of numba: 1 where one begins, −1 where it ends."""
+    global _compiling
+    with _compiling_lock:
+        _compiling = max(_compiling + change, 0)
+
+
 def running() -> str:
-    """Return what of the innermost run in this process is done, in words; "" if none runs."""
+    """Return what of the innermost run in this process is done, in words; "" if none runs.
+
+    It states too that functions are compiled, which is what runs wait for then.
+    """
     try:
         run = _running[-1]
     except IndexError:
-        return ""
-    return f"{run.label}, {run.done} of {run.total}" if run.total else run.label
+        done = ""
+    else:
+        done = f"{run.label}, {run.done} of {run.total}" if run.total else run.label
+    return ", ".join(part for part in (done, "formulas are compiled" * (_compiling > 0)) if part)
 
 
 def drawn() -> bool:

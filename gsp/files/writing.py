@@ -99,7 +99,8 @@ def write_file(
         If `path` exists and `overwrite` is not set, is a pipe or device, or a symbolic link that
         leads to one or to no name, or the folder cannot be written.
     """
-    target = followed(_check_free(path, overwrite=overwrite))
+    given = _check_free(path, overwrite=overwrite)
+    target = followed(given)
     try:
         _remove_stale(target)
         with _temporary(target) as temporary:
@@ -110,9 +111,9 @@ def write_file(
             else:
                 _name_new(temporary, target)
     except FileExistsError as error:
-        raise UnwritableOutput(_exists(target)) from error
+        raise UnwritableOutput(_exists(given)) from error
     except OSError as error:
-        raise UnwritableOutput(f"{target}: cannot be written: {error.strerror}") from error
+        raise UnwritableOutput(f"{given}: cannot be written: {error.strerror}") from error
 
 
 @contextmanager
@@ -238,13 +239,14 @@ def check_writable(
         If it exists and may not, is a folder or no path, or a symbolic link that leads to no name,
         ends otherwise, or the folder cannot be written.
     """
-    target = followed(_check_free(path, overwrite=overwrite, suffixes=suffixes))
+    given = _check_free(path, overwrite=overwrite, suffixes=suffixes)
+    target = followed(given)
     try:  # permissions are not sufficient: in /proc, or on a volume that is mounted read-only
         with _temporary(target):
             pass
     except OSError as error:
         what = f"the folder {target.parent} is not writable: {error.strerror}"
-        raise UnwritableOutput(f"{target}: {what}") from error
+        raise UnwritableOutput(f"{given}: {what}") from error
 
 
 def _check_free(
@@ -272,10 +274,10 @@ def _check_free(
         raise UnwritableOutput(f"{target}: expected a file name, received a folder")
     if followed(target).is_symlink():
         raise UnwritableOutput(expected(str(target), "a file name", "a link that leads to itself"))
-    if exists and not overwrite:
-        raise UnwritableOutput(_exists(target))
     if exists and not followed(target).is_file() and followed(target).exists():
         raise UnwritableOutput(expected(str(target), "a regular file", "a pipe or device"))
+    if exists and not overwrite:
+        raise UnwritableOutput(_exists(target))
     if not target.parent.is_dir():
         raise UnwritableOutput(f"{target}: the folder {target.parent} does not exist")
     return target

@@ -16,7 +16,7 @@ from rich.cells import cell_len
 
 from gsp.cli.app import COMMANDS, app, load
 from gsp.cli.outputs import waiting
-from gsp.progress import meter, running
+from gsp.progress import compiling, meter, running
 from gsp.version import __version__
 from tests import campaign
 
@@ -205,6 +205,11 @@ def test_a_long_command_states_without_a_terminal_what_is_done(monkeypatch):
         report(3, 8)
         with waiting.lines(first=1e-3):
             assert second.wait(120.0)
+        compiling(1)
+        compiling(1)
+        compiling(-1)
+        assert running() == "cells, 3 of 8, formulas are compiled"
+        compiling(-1)
     lines = "".join(printed).splitlines()
     wanted = re.compile(r"gsp: working for \d+ s: cells, 3 of 8")
     assert all(map(wanted.fullmatch, lines)), lines
@@ -324,6 +329,7 @@ def test_a_line_where_code_is_compiled(gsp, monkeypatch, terminal):
     from gsp.kernels import compiled
 
     listener = compiled._First()
+    monkeypatch.setattr(compiled, "compiling", lambda change: None)
     find = show.find_mechanism_or_design
     monkeypatch.setattr("sys.stderr.isatty", lambda: terminal, raising=False)
 

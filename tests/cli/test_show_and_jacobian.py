@@ -242,6 +242,7 @@ def test_all_that_is_known_is_shown(gsp, command):
         line = next(x for x in out.splitlines() if x.startswith(f"{index} "))
         assert numbers(line)[0] == pytest.approx(float(value), rel=1e-5)
     assert "CDN_CL, σ_min, SD, F_max, LCI: with --length" in out
+    assert "with --indices all" not in out  # which needs a length
     out = gsp(command, name, "--length", 1.0).out
     assert re.search("^local_conditioning ", out, re.MULTILINE)
     assert "SD: with --indices all" in out
@@ -396,3 +397,16 @@ def test_a_file_does_not_replace_a_name_of_the_library(gsp, tmp_path, name, word
     path = gsp(*(word.format(f"./{name}") if word == "{}" else word for word in words))
     assert (path.status, path.out) == (2, "")
     assert "not TOML" in path.err or "line 1" in path.err
+
+
+@pytest.mark.parametrize(
+    "design", ["lee-centre-side(a=1, b=2, alpha=0.1, beta=0.3)", "lane-modified-paradex"]
+)
+def test_the_indices_that_are_left_out_are_found_as_it_is_stated(gsp, design):
+    out = gsp("show", design).out
+    assert not re.search(r"(^|\s)-0(\s|$)", out)
+    hints = [line.split(": with ")[1] for line in out.splitlines() if ": with --" in line]
+    assert "--length" in hints
+    named = [hint for hint in hints if hint.startswith("--indices")]
+    assert named == ([] if design.startswith("lane") else ["--indices λ"])
+    assert all(gsp("show", design, *hint.split()).status == 0 for hint in named)

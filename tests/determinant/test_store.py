@@ -38,7 +38,7 @@ from gsp.determinant.store import damage as damage_of
 from gsp.determinant.store import export_maxima, import_maxima, location
 from gsp.determinant.store.connection import without_password
 from gsp.determinant.store.database import LONGEST_CLAIM_SECONDS
-from gsp.determinant.store.entries import entry_of
+from gsp.determinant.store.entries import COUNTS, entry_of
 from gsp.determinant.store.validity import checked_entry
 from gsp.errors import GspError, InvalidInput, MalformedFile
 from gsp.families import lee
@@ -620,6 +620,26 @@ def test_more_searches_that_agree_than_searches_are_refused(sqlite_store, tmp_pa
         table.to_csv(bad, index=False)
     with pytest.raises(MalformedFile, match="agreed: expected at most the"):
         import_maxima(store, bad)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"singles": 5, "summits": 4}, "singles: expected at most the 4 local maxima, received 5"),
+        ({"summits": 0, "singles": 0}, "summits: expected an integer ≥ 1"),
+        ({"evaluations": 0}, "evaluations: expected an integer ≥ 1, received 0"),
+        ({"agreed": 1}, "converged: expected 0, as fewer than two starts"),
+        ({"starts": 0, "agreed": 0, "summits": 0, "singles": 0}, "converged: expected 0"),
+    ]
+    + [({name: True}, f"{name}: expected an integer ≥ 0, received True") for name in COUNTS],
+)
+def test_numbers_that_no_search_counts_are_refused(sqlite_store, changed, message):
+    form, true = searched()
+    assert not true.proven
+    good = entry_of(true, form)
+    assert checked_entry(good)["value"] == pytest.approx(true.value, rel=1e-12)
+    with pytest.raises(GspError, match=message):
+        checked_entry({**good, **changed})
 
 
 @pytest.mark.parametrize("given", ["gsp maxima 2", "", 1, None, ["gsp maxima 1"]])

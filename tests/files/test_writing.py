@@ -1,6 +1,8 @@
 """Files: nothing is lost, nothing is left half written, and errors are named."""
 
+import itertools
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -66,11 +68,20 @@ def test_a_pipe_is_not_replaced(tmp_path):
     pipe, link = tmp_path / "pipe.txt", tmp_path / "link.txt"
     os.mkfifo(pipe)
     link.symlink_to(pipe)
-    for path in (pipe, link):
-        with pytest.raises(UnwritableOutput, match="expected a regular file, received a pipe"):
-            write_text(path, "x", overwrite=True)
+    for path, overwrite in itertools.product((pipe, link), (False, True)):
+        for write in (check_writable, lambda p, **given: write_text(p, "x", **given)):
+            with pytest.raises(UnwritableOutput, match="expected a regular file, received a pipe"):
+                write(path, overwrite=overwrite)
     assert pipe.is_fifo()
     assert link.is_symlink()
+
+
+def test_a_link_into_no_folder_is_named_as_it_was_given(tmp_path):
+    link = tmp_path / "link.txt"
+    link.symlink_to(tmp_path / "none" / "file.txt")
+    for write in (check_writable, lambda p, **given: write_text(p, "x", **given)):
+        with pytest.raises(UnwritableOutput, match=rf"^{re.escape(str(link))}: "):
+            write(link, overwrite=True)
 
 
 def test_a_link_to_no_file_is_one_that_exists(tmp_path):

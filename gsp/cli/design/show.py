@@ -199,7 +199,7 @@ def _anchors_table(design: Design) -> None:
 
 def _vector(vector: object) -> str:
     values = [float(x) for x in vector]  # type: ignore[attr-defined]
-    return "" if values[0] != values[0] else "  ".join(f"{x:8.6g}" for x in values)
+    return "" if values[0] != values[0] else "  ".join(f"{x + 0.0:8.6g}" for x in values)
 
 
 def _equations_table(constraints: Iterable[str]) -> None:

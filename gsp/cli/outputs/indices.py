@@ -86,15 +86,20 @@ def _with_known_maximum(design: Design, settings: Settings) -> Settings:
 
 
 def _left_out(design: Design, settings: Settings, names: list[str]) -> list[str]:
-    groups: dict[str, list[str]] = {}
+    with_length, by_name = [], []
     for name in names:
         index = INDICES[name]
         needs = index.missing(design, (*settings.given(), "maximum"))
         if "length" in needs:
-            groups.setdefault("with --length", []).append(index.symbol)
+            with_length.append(index.symbol)
+        elif "maximum" in index.needs and design.driven:
+            continue  # there is no search for the maximum of such designs
         elif not needs and index.actuators in (None, len(design.joint_names)):
-            groups.setdefault("with --indices all", []).append(index.symbol)
-    return [f"{', '.join(symbols)}: {how}" for how, symbols in groups.items()]
+            by_name.append(index.symbol)
+    # All indices need what one of them needs.
+    how = f"--indices {','.join(by_name)}" if with_length else "--indices all"
+    groups = {"--length": with_length, how: by_name}
+    return [f"{', '.join(symbols)}: with {how}" for how, symbols in groups.items() if symbols]
 
 
 def _print_determinant(posture: Posture) -> None:

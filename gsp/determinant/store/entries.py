@@ -8,9 +8,10 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
+from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import SearchRegion, inside
-from gsp.determinant.record import METHOD, Maximum
+from gsp.determinant.record import METHOD, PROOF_TOLERANCE, Maximum
 from gsp.determinant.search import always_singular, slope_at
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.matrices import absolute_determinant
@@ -89,11 +90,12 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: SearchRegion) -
         raise InvalidInput(expected("position", wanted, None))
     if not abs(actual - stored) <= VALUE_TOLERANCE * max(abs(stored), abs(actual)):
         raise InvalidInput(expected("value", f"{actual!r}, which its pose has", stored))
-    count = {name: _count(name, entry.get(name)) for name in COUNTS}
-    if count["agreed"] > count["starts"]:
-        wanted = f"at most the {count['starts']} starts"
-        raise InvalidInput(expected("agreed", wanted, count["agreed"]))
+    count = _counts(entry)
     flag = {name: bool(_count(name, entry.get(name), most=1)) for name in FLAGS}
+    proven = actual >= upper_bound(design) * (1.0 - PROOF_TOLERANCE)
+    if flag["converged"] and count["agreed"] < 2 and not proven:
+        wanted = "0, as fewer than two starts ended at this maximum"
+        raise InvalidInput(expected("converged", wanted, 1))
     if flag["converged"] and pose is not None and actual > 0.0:
         slope = slope_at(design, region, pose)
         if slope > STATIONARY_SLOPE:
@@ -114,6 +116,23 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: SearchRegion) -
         converged=flag["converged"],
         attained=flag["attained"],
     )
+
+
+def _counts(entry: Mapping[str, Any]) -> dict[str, int]:
+    """Return the numbers of an entry that a search counts, if one search can have counted them."""
+    for name in COUNTS:
+        if isinstance(entry.get(name), bool):
+            raise InvalidInput(expected(name, "an integer ≥ 0", entry.get(name)))
+    count = {name: _count(name, entry.get(name)) for name in COUNTS}
+    if not count["evaluations"]:
+        raise InvalidInput(expected("evaluations", "an integer ≥ 1", 0))
+    if count["agreed"] and not count["summits"]:
+        wanted = f"an integer ≥ 1, as {count['agreed']} starts ended at this maximum"
+        raise InvalidInput(expected("summits", wanted, 0))
+    for name, of, what in (("agreed", "starts", "starts"), ("singles", "summits", "local maxima")):
+        if count[name] > count[of]:
+            raise InvalidInput(expected(name, f"at most the {count[of]} {what}", count[name]))
+    return count
 
 
 def _pose(entry: Mapping[str, Any], region: SearchRegion) -> Pose:

@@ -11,23 +11,24 @@ from typing import Any
 
 from numba.core import event
 
-from gsp.progress import COMPILATION
+from gsp.progress import COMPILATION, compiling
 
 LOG = logging.getLogger(COMPILATION)
 
 
 class _First(event.Listener):
-    """Logs the first compilation; what the cache holds is not compiled."""
+    """Logs the first compilation, and counts those that run; not what the cache holds."""
 
     logged = False
 
     def on_start(self, event: Any) -> None:
+        compiling(1)
         if not self.logged:
             self.logged = True
             LOG.info("formulas are compiled, once for each installation: up to a minute")
 
     def on_end(self, event: Any) -> None:
-        """Nothing: a listener has both methods."""
+        compiling(-1)
 
 
 event.register("numba:compile", _First())

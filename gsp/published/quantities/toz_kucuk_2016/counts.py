@@ -100,11 +100,27 @@ def number_of_legs(mechanism: str, chain: str = "") -> int:
     return sum(chain in ("", leg.chain) for leg in legs)
 
 
-def jacobian_shape(mechanism: str) -> tuple[int, ...]:
-    """Shape of the inverse Jacobian of a mechanism, on the anchor lines of the first example."""
+def _jacobian(mechanism: str) -> tuple[tuple[str, ...], Array]:
+    """Constraints of the rows, and J, of a mechanism on the anchor lines of the first example."""
     template = catalogue.design("toz-kucuk-2016-d3-6")
     placed = catalogue.instantiate(catalogue.mechanism(mechanism), template)
-    return placed.at(Pose([10.0, -10.0, 138.0])).jacobian.shape
+    names = tuple(row.constraint.name for row in placed.rows)
+    return names, placed.at(Pose([10.0, -10.0, 138.0])).jacobian
+
+
+def jacobian_rows(mechanism: str) -> list[int]:
+    """Count the rows of D1, D2, D3, D4 and A1 of the inverse Jacobian, and its columns."""
+    names, jacobian = _jacobian(mechanism)
+    return [*(names.count(name) for name in ("D1", "D2", "D3", "D4", "A1")), jacobian.shape[1]]
+
+
+def zeros_and_entries(mechanism: str, row: int) -> list[int]:
+    """Count the leading zeros and all entries of a row of the inverse Jacobian, from 1."""
+    _, jacobian = _jacobian(mechanism)
+    if not 1 <= row <= len(jacobian):
+        raise InvalidInput(expected("row", f"1 to {len(jacobian)}", row))
+    values = jacobian[row - 1]
+    return [int(np.argmax(values != 0.0)), values.size]
 
 
 def unit_exponents(
@@ -134,7 +150,8 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "constraints": constraints,
         "number_of_constraints": number_of_constraints,
         "number_of_legs": number_of_legs,
-        "jacobian_shape": jacobian_shape,
+        "jacobian_rows": jacobian_rows,
+        "zeros_and_entries": zeros_and_entries,
         "unit_exponents": unit_exponents,
     }
 )
