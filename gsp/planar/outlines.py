@@ -18,6 +18,7 @@ from gsp.checks import check_array, check_type
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, norm
+from gsp.geometry.vectors import unit as unit_vector
 from gsp.limits.labels import Active
 from gsp.planar.allowed import CENTRE_ROUNDING, Legs, Limits
 from gsp.planar.arrangement import CONTACT_TRIES, Link, Loop, restored, shrunk, traced
@@ -187,6 +188,25 @@ def components(legs: Legs) -> tuple[PlanarComponent, ...]:
             made = (_component([loops[i] for i in own], limits, middle, unit) for own in nested)
             return tuple(sorted(made, key=lambda part: -part.area))
     raise GspError(expected("strokes", DISTINCT, "some that do not"))
+
+
+def inner_point(part: PlanarComponent) -> Array:
+    """Return a point (2,) of a component that is far from its boundary [length].
+
+    The farthest of points on the normals of the pieces, at distances of powers of two.
+    """
+    boundary = np.concatenate([piece.points for piece in part.pieces])
+    away = np.ptp(boundary, axis=0).max() * 0.5 ** np.arange(1.0, 30.0)
+    best, depth = boundary[0], -1.0
+    for piece in part.pieces:
+        k = len(piece.points) // 2
+        along = unit_vector(piece.points[k + 1] - piece.points[k - 1])
+        points = piece.points[k] + away[:, None] * [-along[1], along[0]]
+        points = points[part.contains(points)]
+        far = norm(points[:, None] - boundary).min(axis=1)
+        if far.max(initial=depth) > depth:
+            best, depth = points[far.argmax()], float(far.max())
+    return np.asarray(best)
 
 
 def _nested(loops: list[Loop], limits: Limits) -> list[list[int]] | None:

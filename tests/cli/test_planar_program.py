@@ -112,12 +112,33 @@ def test_all_components_at_a_fixed_angle_from_a_point_of_a_small_one(gsp, tmp_pa
     assert curves["maximal"].all()
 
 
+def test_rays_start_in_the_largest_component_where_no_middle_pose_is_known(gsp, tmp_path):
+    """Lengths of 1, 5 and 5 from three points on a line, all to one point, are impossible."""
+    strokes, anchors = [[0, 2], [1, 9], [1, 9]], [[0, 0], [1, 0], [-1, 0]]
+    design = PlanarDesign(["D1"] * 3, anchors, np.zeros((3, 2)), strokes=strokes, name="far")
+    design.write(tmp_path / "far.toml")
+    assert "--position states" in gsp("planar", "far.toml").error
+    assert "--position states" in gsp("planar", "far.toml", "--angle", 0, "--guess", 0, 1).error
+    result = gsp("planar", "far.toml", "--angle", 0, "--rays", 4)
+    assert result.status == 0
+    assert result.out.startswith("Radiating point in the largest component")
+    assert result.out.endswith(
+        "2 components, area 6.283185; the radiating point is in component 0\n"
+    )
+
+
 def test_the_home_pose_is_stated_only_within_the_strokes(gsp):
     at_home = ("planar", "lee-2000-planar", "--position", 0, 0, "--rays", 2, "--no-connecting")
     # Each leg has the length 0.5 at home.
     within, beyond = (gsp(*at_home, "--stroke", low, 0.9).out for low in (0.3, 0.8))
     assert within.startswith("Radiating point  (0, 0), angle 0°, joints 0.500000 0.500000 0.500000")
     assert beyond.startswith("Radiating point  (0, 0)\n")
+
+
+@pytest.mark.parametrize("command", ["show", "jacobian"])
+def test_other_commands_name_this_one_for_planar_designs(gsp, triangle, command):
+    for design in (triangle, "lee-2000-planar"):
+        assert "see `gsp planar`" in gsp(command, design).error
 
 
 @pytest.mark.parametrize(

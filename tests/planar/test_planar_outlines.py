@@ -259,6 +259,9 @@ def test_an_angle_leg_allows_an_angle_or_not():
     )
     assert len(planar_components(design, 0.4)) == 1
     assert planar_components(design, 0.6) == ()
+    # Half a turn is π and −π.
+    half = design.replace(strokes=[*design.strokes[:2], [3.0, np.pi]])
+    assert [len(planar_components(half, a)) for a in (np.pi, -np.pi, 3.05, -3.05)] == [1, 1, 1, 0]
 
 
 def test_a_section_has_the_boundaries_of_all_components():

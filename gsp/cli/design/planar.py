@@ -13,9 +13,12 @@ from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_planar_design
 from gsp.cli.inputs.options import Connecting, Force, Rays, refuse_unused
 from gsp.cli.inputs.workspaces import check_stroke
+from gsp.cli.outputs.console import say
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.planar import Results, report_planar
+from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.files.tables import check_table
+from gsp.planar import PlanarDesign
 
 
 def planar(
@@ -100,7 +103,7 @@ def planar(
 
     - `gsp planar lee-2000-planar --stroke 0.3 0.9 --angle 10 --boundary boundary.csv`
     """
-    from gsp.planar import planar_section, radiating_point
+    from gsp.planar import planar_section
     from gsp.workspace.boundary.mapping import RAY_BYTES
 
     if plot is not None:
@@ -123,11 +126,7 @@ def planar(
         found = found.replace(strokes=[stroke] * len(found.joint_names))
     place = position
     if place is None:
-        start = found.base_points.mean(axis=0) if found.home is None else found.home.position
-        pose = radiating_point(found, start if guess is None else guess)
-        place = tuple(pose.position.tolist())
-        # Its angle is feasible there, and so the first that rays start from.
-        found = found.replace(home=pose)
+        found, place = _radiating(found, guess, turn)
     mapped = planar_section(
         found,
         place,
@@ -139,3 +138,37 @@ def planar(
     )
     results = Results(boundary=boundary, out=out, plot=plot, force=force)
     report_planar(mapped, found, place, turn, rays, results)
+
+
+def _radiating(
+    design: PlanarDesign, guess: tuple[float, float] | None, angle: float | None
+) -> tuple[PlanarDesign, tuple[float, float]]:
+    """Return a design whose home is the pose at the radiating point, and this point.
+
+    At a fixed angle where that point is not feasible, or there is none, it is a point of the
+    largest component, which is said, and the home is that of the design.
+    """
+    from gsp.planar import planar_components, radiating_point
+    from gsp.planar.outlines import inner_point
+
+    home = design.base_points.mean(axis=0) if design.home is None else design.home.position
+    pose, failure = None, None
+    try:
+        pose = radiating_point(design, home if guess is None else guess)
+    except EmptyWorkspace as error:
+        failure = error
+    if angle is not None and guess is None:
+        try:
+            parts = planar_components(design, angle)
+        except InvalidInput:  # no bounds of the positions: rays only
+            parts = ()
+        inside = pose is not None and any(part.contains(pose.position) for part in parts)
+        if parts and not inside:
+            say("Radiating point in the largest component: no other is known at this angle")
+            x, y = inner_point(parts[0]).tolist()
+            return design, (x, y)
+    if pose is None:
+        raise EmptyWorkspace(f"{failure}; --position states the radiating point itself")
+    # Its angle is feasible there, and so the first that rays start from.
+    x, y = pose.position.tolist()
+    return design.replace(home=pose), (x, y)

@@ -9,7 +9,7 @@ from gsp.catalogue import design as published_design
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms, place
 from gsp.catalogue.placement import TEMPLATE
 from gsp.cli.outputs.console import warn
-from gsp.errors import UnknownDesign, UnknownMechanism
+from gsp.errors import GspError, MalformedFile, UnknownDesign, UnknownMechanism
 from gsp.families.texts import design_of_family, is_family
 from gsp.model.design import Design, read_design
 from gsp.model.mechanism import Mechanism
@@ -21,6 +21,7 @@ _PLACEMENT = re.compile(r"^(?:D\d(?:A1)?|A1|0)(?:-(?:D\d(?:A1)?|A1|0))+$", re.IG
 ON_TEMPLATE = "@"
 
 HINT = "Known: mechanisms by `gsp catalogue`, designs by `gsp catalogue --designs`, files (.toml)"
+PLANAR = "It is a planar design: see `gsp planar`"
 DIMENSIONS = "A mechanism alone has no dimensions: expected a published design or a file (.toml)"
 
 
@@ -67,14 +68,27 @@ def find_design(text: str) -> Design:
     if at and _MECHANISM.match(legs):
         return instantiate(mechanism(legs), find_design(template))
     if _is_file(text):
-        design = read_design(text)
+        design = _read_spatial(text)
         return design if design.name else design.replace(name=Path(text).stem)
     if is_family(text):
         return design_of_family(text)
     if text not in design_names():
         hint = DIMENSIONS if _MECHANISM.match(text) else HINT
+        hint = PLANAR if text in planar_design_names() else hint
         raise UnknownDesign("design", text, design_names(), hint)
     return published_design(text)
+
+
+def _read_spatial(text: str) -> Design:
+    """Return the design in a file; the error of a planar one states the command for it."""
+    try:
+        return read_design(text)
+    except MalformedFile as error:
+        try:
+            read_planar_design(text)
+        except GspError:
+            raise error from None
+        raise MalformedFile(f"{text}: expected a design in space. {PLANAR}") from error
 
 
 def find_planar_design(text: str) -> PlanarDesign:
@@ -98,4 +112,5 @@ def find_mechanism_or_design(text: str) -> Mechanism | Design:
     if _MECHANISM.match(text):
         return mechanism(text)
     known = (*design_names(), *(m.name for m in mechanisms()))
-    raise UnknownDesign("design or mechanism", text, known, HINT)
+    hint = PLANAR if text in planar_design_names() else HINT
+    raise UnknownDesign("design or mechanism", text, known, hint)
