@@ -140,7 +140,7 @@ def test_every_section_is_there_or_says_why_not(small):
     for title, _ in page.SECTIONS:
         assert f"<h2>{title}</h2>" in small
     text = text_of(small)
-    assert "expected strokes or other limits, received none" in text  # no workspace
+    assert "Nothing bounds the workspace: the design has no strokes" in text
     assert "The design states no strokes." in text
     assert "No task was given" in text
     assert "nan" not in text.lower().split()

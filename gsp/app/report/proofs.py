@@ -19,6 +19,11 @@ from gsp.rounding import rounded_down, rounded_up
 
 def workspace(study: Study) -> str:
     """Return sections and volume of the positions at which the rotation of the pose is feasible."""
+    if study.limits is None:
+        return (
+            "<p class=note>Nothing bounds the workspace: the design has no strokes, and no task "
+            "with limits was given.</p>"
+        )
     unit, parts = study.state.design.unit, []
     for name, _ in PLANES:
         low, high = study.sections[name].area
