@@ -152,6 +152,22 @@ def compiling(change: int) -> None:
         _compiling = max(_compiling + change, 0)
 
 
+@contextmanager
+def during(label: str) -> Iterator[None]:
+    """State what a process works on meanwhile, for `running`, where no steps are counted.
+
+    Parameters
+    ----------
+    label : str
+    """
+    counter = _Counter(label)
+    _running.append(counter)
+    try:
+        yield
+    finally:
+        _running.remove(counter)
+
+
 def running() -> str:
     """Return what of the innermost run in this process is done, in words; "" if none runs.
 

@@ -246,7 +246,9 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     try:
         # The server of the browser tool works until it is stopped.
         waits = arguments is None and words[:1] != ["app"]
-        with warnings.catch_warnings(), notices(), waiting.lines() if waits else nullcontext():
+        command = words[0] if words and words[0] in COMMANDS else ""
+        lines = waiting.lines(command=command) if waits else nullcontext()
+        with warnings.catch_warnings(), notices(), lines:
             status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
         line = one_line(error, words, _command_of(words))

@@ -16,7 +16,7 @@ from rich.cells import cell_len
 
 from gsp.cli.app import COMMANDS, app, load
 from gsp.cli.outputs import waiting
-from gsp.progress import compiling, meter, running
+from gsp.progress import compiling, during, meter, running
 from gsp.version import __version__
 from tests import campaign
 
@@ -216,6 +216,14 @@ def test_a_long_command_states_without_a_terminal_what_is_done(monkeypatch):
     with waiting.lines():
         pass
     assert "".join(printed).splitlines() == lines
+    # Between counted runs the command is named, or what it does.
+    second.clear()
+    printed.clear()
+    with waiting.lines(first=1e-3, command="workspace"):
+        assert second.wait(120.0)
+    assert re.fullmatch(r"gsp: working for \d+ s: workspace", printed[0].strip())
+    with during("picture"):
+        assert running() == "picture"
     assert running() == ""
 
 

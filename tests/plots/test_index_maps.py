@@ -88,8 +88,8 @@ def test_feasible_cells_without_a_value_are_hatched_and_infeasible_ones_white(ma
     assert len(hatched) == feasible.sum() > 0
     np.testing.assert_allclose([x for x, _ in hatched], 0.0, atol=1e-12)
     assert all(patch.get_hatch() for patch in ax.patches)
-    (text,) = ax.get_legend().get_texts()
-    assert text.get_text() == "feasible, index undefined"
+    entries = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert entries == ["feasible, index undefined", "infeasible"]
     assert not overlaps(ax)
 
 
@@ -119,6 +119,8 @@ def test_a_constant_and_an_undefined_index_are_stated(mapped, number, text):
         ({"at": [1]}, "at"),
         ({"value": "best"}, "value"),
         ({"mapped": 1}, "mapped"),
+        ({"worst": 1}, "as Region.worst returns it"),
+        ({"worst": gsp.workspace.Worst(value=1.0, bound=1.0, pose=None, closed=True)}, "None for"),
     ],
 )
 def test_wrong_arguments(mapped, options, match):
@@ -170,13 +172,54 @@ def test_cells_of_a_sample_have_the_values_of_the_poses_within(sampled, value, i
     assert_ink(ax.figure)
 
 
-def test_cells_of_a_sample_end_where_the_plane_is_proven_outside(sampled):
+def test_cells_of_a_sample_end_at_the_outline_which_the_legend_explains(sampled):
     ax = index_map(sampled, NAMES[0])
     path = ax.collections[0].get_clip_path().get_fully_transformed_path()
     places = np.random.default_rng(4).uniform(*sampled.region.extents[1], (500, 2))
-    possible = sampled.region.polygons().possible
     shown = path.contains_points(ax.transData.transform(places))
-    assert np.array_equal(shown, shapely.contains_xy(possible, places))
+    # But for undecided bays that are narrower than the line of the outline.
+    inside = sampled.region.polygons().inside
+    off = shapely.distance(inside, shapely.points(places[shown]))
+    assert off.max() < 0.01 * np.ptp(places, axis=0).max()
+    assert shown[shapely.contains_xy(inside, places)].all()
+    entries = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "outline of what is proven inside" in entries
+    # Cells at the ends of the region have no pose: some places inside are in one of them.
+    values, corners = drawn(ax)
+    inner = places[shapely.contains_xy(inside, places)]
+    ends = corners[:, 0, 0], corners[0, :, 1]
+    cells = [np.searchsorted(e, x) - 1 for e, x in zip(ends, inner.T, strict=True)]
+    assert np.isnan(values[tuple(cells)]).any()
+    assert "no pose was drawn" in entries
+
+
+@pytest.mark.parametrize("index", NAMES)
+def test_the_worst_pose_is_marked_and_its_value_is_in_the_legend(sampled, index):
+    values = sampled.values[index]
+    k = np.nanargmin(values)
+    problem = sampled.region.problem
+    for found, number, pose in (
+        (None, values[k], sampled.pose[k]),
+        (
+            gsp.workspace.Worst(
+                value=0.5 * values[k], bound=0.0, pose=(other := sampled.pose[0]), closed=False
+            ),
+            0.5 * values[k],
+            other,
+        ),
+        (
+            gsp.workspace.Worst(value=2.0 * values[k], bound=0.0, pose=other, closed=False),
+            values[k],
+            sampled.pose[k],
+        ),
+    ):
+        ax = index_map(sampled, index, worst=found)
+        entries = [text.get_text() for text in ax.get_legend().get_texts()]
+        assert f"worst found: {number:.4g}" in entries
+        (mark,) = ax.lines
+        place = (pose.position - problem.origin) @ problem.frame[:2].T
+        np.testing.assert_allclose(mark.get_xydata()[0], place, atol=1e-12)
+    assert not index_map(sampled, index, value="mean").lines
 
 
 def test_samples_are_drawn_over_other_coordinates(sampled):

@@ -75,6 +75,35 @@ def test_worst_value_over_a_range_of_rotations():
     assert region.contains(found.pose.position) == 1
 
 
+@pytest.mark.parametrize("scale", [1.0, 1e3])
+def test_the_least_determinant_is_not_below_the_power_of_the_least_singular_value(scale):
+    """With few boxes the bound of |det J| alone is 0 here."""
+    turns = gsp.PoseBox([0, 0, 0], [(-8, 8)] * 3, degrees=True)
+    design = SIX_THREE.scaled(scale)
+    limits = gsp.Limits(position=[None, None, (6 * scale, None)])
+    region = gsp.workspace.dextrous(design, turns, limits, resolution=1.5 * scale)
+    length = 7.5 * scale
+    found = region.worst("|det J|", budget=200, length=length)
+    least = region.worst("σ_min", budget=200, length=length).bound
+    assert found.bound >= length**3 * least**6 * (1.0 - 1e-12) > 0.0
+    own = np.abs(np.linalg.det(design.at(region.poses(500)).jacobian))
+    assert found.bound <= min(found.value, own.min())
+    share = region.worst("λ", budget=200, length=length, maximum=2.0 * scale**3)
+    assert share.bound == pytest.approx(found.bound / (2.0 * scale**3), rel=1e-12)
+
+
+def test_a_region_states_that_its_resolution_was_not_reached():
+    given = {"limits": gsp.Limits(position=[None, None, (6, None)]), "resolution": 0.5}
+    short = gsp.workspace.fixed_orientation(SIX_THREE, budget=20_000, **given)
+    assert not short.reached
+    assert short.resolution > short.wanted == 0.5
+    assert "0.5 is not reached" in repr(short)
+    whole = gsp.workspace.fixed_orientation(SIX_THREE, **{**given, "resolution": 2.0})
+    assert whole.reached
+    assert whole.resolution <= 2.0
+    assert "reached" not in repr(whole)
+
+
 def test_worst_value_has_the_same_bits_in_blocks_of_any_size(monkeypatch):
     """All quantities of many cells at once would need gigabytes."""
     whole = both().worst("CTN", budget=6000)

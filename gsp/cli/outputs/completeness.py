@@ -29,7 +29,7 @@ def check_reached(
     end = f"undecided cells of up to {region.resolution * scale:.4g} {unit}".rstrip()
     if wanted is None:
         _check_known(region, aim or region.kind, f"{why} with {end}")
-    elif region.resolution > wanted:
+    elif not region.reached:
         size = f"{wanted * scale:.4g} {unit}".rstrip()
         warn(f"--resolution: {size} is not reached: {why} with {end}")
     else:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from gsp.cli.outputs.console import say
 from gsp.errors import InvalidInput
+from gsp.progress import during
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,6 +51,7 @@ def save_picture(figure: Figure | Axes, path: Path, *, overwrite: bool = False) 
 
     from gsp.plots import save
 
-    save(figure, path, overwrite=overwrite)
+    with during("picture"):
+        save(figure, path, overwrite=overwrite)
     plt.close(figure.figure)  # type: ignore[arg-type]
     say(f"Picture    {path}")

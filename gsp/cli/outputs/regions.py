@@ -19,6 +19,7 @@ from gsp.files.tables import FORMATS, write_table
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.progress import during
 from gsp.rounding import rounded_down, rounded_up
 from gsp.workspace.sides import Side
 
@@ -220,13 +221,13 @@ def _save(region: Region, files: Files, title: str, content: Content | None) -> 
     if files.plot is not None and region.empty:
         say(f"Picture    {files.plot} is not written: the region is proven empty")
     elif files.plot is not None:
-        from gsp.figures import style
-        from gsp.plots.common.style import title_text
+        from gsp.figures import style, wrapped
         from gsp.workspace.sets.shapes.titles import heading
 
-        axes = region.plot() if content is None else content.draw()
+        with during("picture"):
+            axes = region.plot() if content is None else content.draw()
         # These lines state what was asked for, in the words of the options.
         rest = axes.get_title().removeprefix(heading(region) + "\n")
         with style():
-            axes.set_title(f"{title_text(title)}\n{rest}", fontsize="medium")
+            axes.set_title(f"{wrapped(title)}\n{rest}", fontsize="medium")
         save_picture(axes, files.plot, overwrite=files.force)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -90,23 +90,26 @@ def print_sample(region: Region, wanted: IndicesOver, order: str) -> Content | N
     )
     drawn = f"{wanted.samples} poses that are drawn evenly from the region"
     say(f"Indices at {drawn}, ± one standard error")
-    show_table(_table(sample, wanted))
+    ends = {name: _worst(region, name, wanted.length) for name in wanted.names}
+    show_table(_table(sample, ends))
     for bound in wanted.bounds:
         share = sample.share_where(bound)
         words = " ".join(bound.split())
         say(f"Share of the poses with {words}: {_with_error(share.value, share.error)}")
     from gsp.plots import workspace as plots
 
-    return Content(table=partial(sample.to_dataframe, order), draw=partial(plots.index_map, sample))
+    first = next(iter(sample.values))
+    draw = partial(plots.index_map, sample, first, worst=ends.get(first))
+    return Content(table=partial(sample.to_dataframe, order), draw=draw)
 
 
-def _table(sample: IndexSample, wanted: IndicesOver) -> Table:
+def _table(sample: IndexSample, ends: Mapping[str, Worst | None]) -> Table:
     columns = ("mean", "worst found", "proven", "global", "undefined")
     table = plain_table("index", "unit", *columns, right=columns)
     design = sample.region.problem.design
     for name, row in sample.summary().iterrows():
         index = INDICES[str(name)]
-        end = _worst(sample.region, index.name, wanted.length)
+        end = ends[index.name]
         lower = index.better == "lower"
         sign, rounded = ("≤", rounded_up) if lower else ("≥", rounded_down)
         found, proven = row["worst"], None

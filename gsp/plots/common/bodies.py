@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from gsp.figures import INK, name_lengths
+from gsp.figures import INK, name_lengths, set_space_ticks
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.labels import SpaceNote
 
@@ -121,8 +121,6 @@ def enclose(ax: Axes3D, points: Array, unit_name: str, size: float = 0.0) -> Non
 
     No side is shorter than a quarter of the longest one, or of `size`.
     """
-    from matplotlib.ticker import MaxNLocator
-
     low, high = points.min(axis=0), points.max(axis=0)
     longest = max(float((high - low).max()), size) or 1.0
     spans = np.maximum(high - low, 0.25 * longest)
@@ -133,8 +131,8 @@ def enclose(ax: Axes3D, points: Array, unit_name: str, size: float = 0.0) -> Non
         axis.pane.set_facecolor("white")
         axis.pane.set_edgecolor("#E8EAED")
         axis.set_tick_params(labelsize=7, colors="#5B616B")
-        # As many numbers as fit on a side.
-        axis.set_major_locator(MaxNLocator(max(round(8.0 * (end - start) / spans.max()), 2)))
+    # As many numbers as fit on a side.
+    set_space_ticks(ax, [max(round(8.2 * span / spans.max()), 2) for span in spans])
     name_lengths(ax, {"x": "x", "y": "y", "z": "z"}, unit_name)
     # matplotlib makes all diagonals equally long: a tall box is drawn smaller, for its labels.
     rise = np.array([0.35, 0.22, 0.91])  # of the axes in this view

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from gsp.checks import reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import name_coordinates, style
+from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -20,18 +22,23 @@ from gsp.plots.common.fields import (
     write_undrawable,
 )
 from gsp.plots.common.scales import scale_of
-from gsp.plots.common.style import GREY, axes_or_new, symbol_text
+from gsp.plots.common.style import GREY, VERMILION, axes_or_new, symbol_text
 from gsp.plots.common.tables import with_unit
+from gsp.plots.workspace.legends import below_labels
 from gsp.workspace.sets.inside.samples import IndexSample
+from gsp.workspace.sets.inside.worst import Worst
 from gsp.workspace.sets.shapes.drawing import draw_outline, plane_labels
 from gsp.workspace.sets.tree.boxes import TURNS
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 # Angles that differ by less come from rounding [°].
 ROUNDING_DEGREES = 1e-9
-UNDEFINED = "feasible, index undefined"
+UNDEFINED, INFEASIBLE, NO_POSE = "feasible, index undefined", "infeasible", "no pose was drawn"
+# Share of a cell that is too small to be seen as a white part of the region.
+WHITE_SHARE = 0.05
 # Poses of a sample per cell, about, and the least and greatest number of cells along a side.
 POSES_PER_CELL, CELLS_PER_SIDE = 20, (5, 60)
 
@@ -51,12 +58,12 @@ def fill(ax: Axes, design: Design, name: str, edges: tuple[Array, Array], values
         draw_cells(ax, edges, values, scale, label, colours=colours)
 
 
-def hatch(ax: Axes, edges: tuple[Array, Array], cells: Mask) -> None:
-    """Hatch cells that are feasible and have no value, and state so in a legend."""
+def hatch(ax: Axes, edges: tuple[Array, Array], cells: Mask) -> list[Artist]:
+    """Hatch cells that are feasible and have no value; return the entry of the legend."""
     from matplotlib.patches import Patch
 
     if not cells.any():
-        return
+        return []
     look: dict[str, Any] = {
         "facecolor": "none",
         "edgecolor": GREY,
@@ -66,12 +73,28 @@ def hatch(ax: Axes, edges: tuple[Array, Array], cells: Mask) -> None:
     for i, j in np.argwhere(cells):
         x, y = edges[0][i : i + 2], edges[1][j : j + 2]
         ax.fill([*x, *x[::-1]], np.repeat(y, 2), **look)
-    ax.legend(
-        handles=[Patch(label=UNDEFINED, **look)], loc="upper center", bbox_to_anchor=(0.5, -0.14)
-    )
+    return [Patch(label=UNDEFINED, **look)]
 
 
-def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, value: str) -> Axes:
+def white(cells: Mask, label: str) -> list[Artist]:
+    """Return the entry of the legend for cells that are left white, if there are any."""
+    from matplotlib.patches import Patch
+
+    look: dict[str, Any] = {"facecolor": "white", "edgecolor": GREY, "linewidth": 0.6}
+    return [Patch(label=label, **look)] if cells.any() else []
+
+
+def explain(ax: Axes, entries: Sequence[Artist]) -> None:
+    """Write a legend below axes, if there is something to explain."""
+    if entries:
+        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0)}
+        below = below_labels(ax)
+        ax.legend(handles=entries, fontsize="small", bbox_transform=below, **place)
+
+
+def draw_sample(
+    sample: IndexSample, name: str, over: Any, ax: Axes | None, value: str, found: Worst | None
+) -> Axes:
     """Return axes with an index over two coordinates of a sample of poses."""
     names = _names(sample)
     chosen = _over(names, over)
@@ -80,7 +103,7 @@ def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, valu
     if sample.region.kind == "plane":
         labels |= zip("uv", plane_labels(sample.region), strict=True)
     turning = [name in TURNS for name in chosen]
-    points = [_coordinate(sample, name) for name in chosen]
+    points = [_coordinate(sample.region, sample.pose, name) for name in chosen]
     ends = [_ends(sample, *pair) for pair in zip(chosen, points, strict=True)]
     number, equal = sample.pose.size / POSES_PER_CELL, turning[0] == turning[1]
     edges = _edges(ends, number, equal=equal)
@@ -98,19 +121,63 @@ def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, valu
         ax.set_title(title, fontsize="medium")
         before = {*ax.collections, *ax.patches}
         fill(ax, sample.region.problem.design, name, edges, values)
-        hatch(ax, edges, feasible & np.isnan(values))
+        entries = hatch(ax, edges, feasible & np.isnan(values))
+        empty = ~feasible
         if sorted(chosen) == ["u", "v"] and chosen[0] == "u":
             # The poses are in the region, but squares around them reach beyond it.
             cells = {*ax.collections, *ax.patches} - before
-            draw_outline(sample.region, ax, cells)
+            entries += draw_outline(sample.region, ax, cells)
+            empty &= _seen(sample.region, edges)
+        entries += white(empty, NO_POSE)
+        if value == "worst":
+            entries += _mark_worst(ax, sample, name, chosen, found)
+        explain(ax, entries)
     return ax
+
+
+def _seen(region: Any, edges: tuple[Array, Array]) -> Mask:
+    """Return of which cells (n, m) more than a sliver is inside of the outline of a region."""
+    import shapely
+
+    x, y = edges
+    low, high = np.meshgrid(x[:-1], y[:-1], indexing="ij"), np.meshgrid(x[1:], y[1:], indexing="ij")
+    boxes = shapely.box(low[0], low[1], high[0], high[1])
+    share = shapely.area(shapely.intersection(boxes, region.polygons().inside))
+    return np.asarray(share > WHITE_SHARE * shapely.area(boxes))
+
+
+def _mark_worst(
+    ax: Axes, sample: IndexSample, name: str, chosen: tuple[str, str], found: Worst | None
+) -> list[Artist]:
+    """Mark the pose with the worst value of a sample, or `found` if that is worse."""
+    values = sample.values[name]
+    if np.isnan(values).all():
+        return []
+    lower = INDICES[name].better == "lower"
+    k = int(np.nanargmax(values) if lower else np.nanargmin(values))
+    number, pose = float(values[k]), sample.pose[k]
+    if found is not None and (found.value > number if lower else found.value < number):
+        number, pose = found.value, found.pose
+    place = [_coordinate(sample.region, pose.reshape(1), axis) for axis in chosen]
+    # Within the frame, also where poses of a search are beside all that were drawn.
+    frame = zip(place, _limits(ax), strict=True)
+    place = [np.clip(x, min(ends), max(ends)) for x, ends in frame]
+    words = f"worst found: {number:.4g}"
+    look: dict[str, Any] = {"marker": "X", "markersize": 8, "linestyle": "none", "zorder": 4}
+    look |= {"markerfacecolor": VERMILION, "markeredgecolor": "white", "clip_on": False}
+    return list(ax.plot(*place, label=words, **look))
+
+
+def _limits(ax: Axes) -> tuple[tuple[float, float], tuple[float, float]]:
+    return ax.get_xlim(), ax.get_ylim()
 
 
 def _names(sample: IndexSample) -> tuple[str, ...]:
     """Return the coordinates that may be drawn: those of one value only are left out."""
     first = {"plane": ("u", "v"), "orientations": ()}.get(sample.region.kind, ("x", "y", "z"))
-    turns = (name for name in TURNS if np.ptp(_coordinate(sample, name)) > ROUNDING_DEGREES)
-    return (*first, *turns)
+    turns = [np.ptp(_coordinate(sample.region, sample.pose, name)) for name in TURNS]
+    vary = (name for name, range_ in zip(TURNS, turns, strict=True) if range_ > ROUNDING_DEGREES)
+    return (*first, *vary)
 
 
 def _over(names: tuple[str, ...], over: Any) -> tuple[str, str]:
@@ -125,13 +192,13 @@ def _over(names: tuple[str, ...], over: Any) -> tuple[str, str]:
     return chosen[0], chosen[1]
 
 
-def _coordinate(sample: IndexSample, name: str) -> Array:
-    """Return a coordinate of the poses by its name, angles in degrees."""
+def _coordinate(region: Any, pose: Pose, name: str) -> Array:
+    """Return a coordinate of poses (n,) by its name, angles in degrees."""
     if name in TURNS:
-        return np.asarray(sample.pose.angles(degrees=True)[:, TURNS.index(name)])
+        return np.asarray(pose.angles(degrees=True)[:, TURNS.index(name)])
     if name in ("u", "v"):
-        return np.asarray(sample.region.problem.inward(sample.pose.position)[:, "uv".index(name)])
-    return np.asarray(sample.pose.position[:, "xyz".index(name)])
+        return np.asarray(region.problem.inward(pose.position)[:, "uv".index(name)])
+    return np.asarray(pose.position[:, "xyz".index(name)])
 
 
 def _ends(sample: IndexSample, name: str, values: Array) -> tuple[float, float]:

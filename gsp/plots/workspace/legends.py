@@ -12,6 +12,7 @@ from gsp.plots.workspace.notes import LABEL_SIZE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.transforms import Transform
 
 # Share of the room that the axes keep, in the direction in which the legend is; greatest width of a
 # legend below them, as a share of the room: one that is wider than axes makes them narrower.
@@ -47,7 +48,6 @@ def write_legend(
         The line of each entry.
     """
     from matplotlib.lines import Line2D
-    from matplotlib.transforms import ScaledTranslation
 
     everything = {**before, **curves, **after}
     if not everything:  # All curves have their names beside them.
@@ -59,12 +59,18 @@ def write_legend(
         rest = {f"and {len(curves) - kept} more": Line2D([], [], linestyle="none")}
         everything = {**before, **dict(list(curves.items())[:kept]), **rest, **after}
     if best.below:
-        away = (BELOW + ax.xaxis.labelpad) / 72.0
-        shift = ScaledTranslation(0.0, -away, ax.figure.dpi_scale_trans)
         place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0)}
-        _draw(ax, everything, best.columns, **place, bbox_transform=ax.transAxes + shift)
+        _draw(ax, everything, best.columns, **place, bbox_transform=below_labels(ax))
     else:
         _draw(ax, everything, best.columns, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def below_labels(ax: Axes) -> Transform:
+    """Return the coordinates of axes, moved down by the height of the labels of the x-axis."""
+    from matplotlib.transforms import ScaledTranslation
+
+    away = (BELOW + ax.xaxis.labelpad) / 72.0
+    return ax.transAxes + ScaledTranslation(0.0, -away, ax.figure.dpi_scale_trans)
 
 
 def _draw(ax: Axes, handles: Mapping[str, Any], columns: int, **place: Any) -> Any:

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_integer, reading
+from gsp.checks import check_integer, check_type, reading
 from gsp.errors import InvalidInput, brief, expected
-from gsp.figures import name_coordinates, style
+from gsp.figures import name_coordinates, style, wrapped, write_title
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
-from gsp.plots.common.style import SHORT_NAME, axes_or_new, few_marks, title_text
+from gsp.plots.common.style import SHORT_NAME, axes_or_new, few_marks
 from gsp.plots.common.tables import chosen_indices
-from gsp.plots.workspace.cells import draw_sample, fill, hatch
+from gsp.plots.workspace.cells import INFEASIBLE, draw_sample, explain, fill, hatch, white
 from gsp.workspace.maps import IndexMap, cell_edges
 from gsp.workspace.sets.inside.samples import IndexSample
+from gsp.workspace.sets.inside.worst import Worst
 from gsp.workspace.sets.tree.boxes import TURNS
 
 if TYPE_CHECKING:
@@ -34,9 +35,16 @@ def _check_mapped(what: str, mapped: Any) -> IndexMap | IndexSample:
     return mapped
 
 
+def _check_worst(what: str, worst: Any) -> Worst | None:
+    if worst is not None:
+        check_type(what, worst, Worst, "a worst value, as Region.worst returns it, or None")
+    return worst  # type: ignore[no-any-return]
+
+
 @arguments.validated(
     mapped=_check_mapped,
     value=arguments.one_of("worst", "mean"),
+    worst=_check_worst,
 )
 def index_map(
     mapped: IndexMap | IndexSample,
@@ -46,6 +54,7 @@ def index_map(
     *,
     at: Mapping[str, int] | None = None,
     value: Literal["worst", "mean"] = "worst",
+    worst: Worst | None = None,
 ) -> Axes:
     """Return axes with an index over two coordinates of a map, dark where it is better.
 
@@ -53,7 +62,10 @@ def index_map(
     mean, of the feasible poses over all other coordinates, where the index is defined; with `at`
     a slice is drawn. White is infeasible; hatched is feasible, but the index is undefined.
 
-    Of a sample of poses of a region, the cells are squares with some twenty poses each.
+    Of a sample of poses of a region, the cells are squares with some twenty poses each. White is
+    where no pose was drawn. In a region in a plane they end at its outline, which is that of what
+    is proven inside. Of worst values the worst of all poses is marked, and its value is in the
+    legend.
 
     Parameters
     ----------
@@ -71,6 +83,9 @@ def index_map(
         Numbers of the nodes, from 0, of coordinates that are fixed; not of a sample.
     value : "worst" or "mean"
         What a cell shows of several poses; means have the weights `IndexMap.weight`.
+    worst : gsp.workspace.Worst or None
+        Of the same region and index, as `Region.worst` returns it; marked if it is worse than all
+        poses of the sample. Not of an IndexMap.
 
     Returns
     -------
@@ -79,7 +94,8 @@ def index_map(
     Raises
     ------
     InvalidInput
-        If the map has no such index or coordinate, or does not vary along two of them.
+        If the map has no such index or coordinate, or does not vary along two of them; on other
+        types.
     MissingSoftware
         Without matplotlib.
 
@@ -96,16 +112,19 @@ def index_map(
     if isinstance(mapped, IndexSample):
         if at is not None:
             raise InvalidInput(expected("at", "None for a sample, which has no nodes", brief(at)))
-        return draw_sample(mapped, name, over, ax, value)
+        return draw_sample(mapped, name, over, ax, value, worst)
+    if worst is not None:
+        raise InvalidInput(expected("worst", "None for an IndexMap", brief(worst)))
     axes = _axes(mapped, over)
     nodes = _nodes(mapped, axes, at)
     values, feasible = _cells(mapped, name, axes, nodes, value)
     with style():
         ax = axes_or_new(ax, 5.4, 4.2)
         _frame(ax, mapped, axes)
-        ax.set_title(_title(mapped, axes, nodes, value), loc="left", fontsize=9, wrap=True)
+        write_title(ax, _title(mapped, axes, nodes, value), loc="left", fontsize=9, wrap=True)
         fill(ax, mapped.design, name, _edges(mapped, axes), values)
-        hatch(ax, _edges(mapped, axes), feasible & np.isnan(values))
+        entries = hatch(ax, _edges(mapped, axes), feasible & np.isnan(values))
+        explain(ax, [*entries, *white(~feasible, INFEASIBLE)])
     return ax
 
 
@@ -210,5 +229,8 @@ def _title(mapped: IndexMap, axes: tuple[int, int], nodes: dict[int, int], value
             fixed.append(f"{names[k]} = {np.rad2deg(place):.4g}°")
     others = [name for k, name in enumerate(names) if k not in (*axes, *nodes)]
     of = f"{value} over {', '.join(others)}" if others else ""
-    name = title_text(mapped.design.name, SHORT_NAME)
-    return "; ".join(text for text in (name, ", ".join(fixed), of) if text)
+    name = wrapped(mapped.design.name)
+    rest = "; ".join(text for text in (", ".join(fixed), of) if text)
+    # A longer name has its own lines.
+    between = "; " if len(name) <= SHORT_NAME else "\n"
+    return between.join(text for text in (name, rest) if text)

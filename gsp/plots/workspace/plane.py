@@ -18,9 +18,9 @@ from gsp.checks import (
     reading,
 )
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
-from gsp.figures import INK, name_lengths, style
+from gsp.figures import INK, name_lengths, style, wrapped, write_title
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.common.style import GREY, axes_or_new, title_text
+from gsp.plots.common.style import GREY, axes_or_new
 from gsp.plots.workspace.curves import CurveStyle, finish_curves, smooth
 from gsp.plots.workspace.notes import Note, mark_points, number_note, point_texts, write
 from gsp.workspace.boundary.sections import Curve, Section
@@ -282,7 +282,7 @@ def _name(ax: Axes, frame: Array, unit: str, title: str) -> None:
     ax.set_aspect("equal")
     name_lengths(ax, {axis: _axis_name(v) for axis, v in zip("xy", frame, strict=True)}, unit)
     if title:
-        ax.set_title(title_text(title), fontsize=TITLE_SIZE)
+        write_title(ax, wrapped(title), fontsize=TITLE_SIZE)
     ax.grid(visible=True)
 
 

@@ -57,7 +57,8 @@ def reachable(
         The orientations that count are those of its angles; its positions are not used. Default
         all orientations.
     resolution : float or None [length]
-        Longest side of the cells that may stay undecided. Default: cells are halved until the
+        Longest side of the cells that may stay undecided; `Region.reached` states whether the
+        budget ended the search before, at `Region.resolution`. Default: cells are halved until the
         bracket is within ±6 % (of an area 2 %), or the budget ends.
     budget : int
         Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
@@ -123,7 +124,8 @@ def dextrous(
         n and c: only positions p with n · p ≥ c, in base axes, such as those on one side of an
         inclined base.
     resolution : float or None [length]
-        Longest side of the cells that may stay undecided. Default: cells are halved until the
+        Longest side of the cells that may stay undecided; `Region.reached` states whether the
+        budget ended the search before, at `Region.resolution`. Default: cells are halved until the
         bracket is within ±3 % (of an area 2 %), or the budget ends.
     budget : int
         Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
@@ -188,7 +190,8 @@ def fixed_orientation(
         n and c: only positions p with n · p ≥ c, in base axes, such as those on one side of an
         inclined base.
     resolution : float or None [length]
-        Longest side of the cells that may stay undecided. Default: cells are halved until the
+        Longest side of the cells that may stay undecided; `Region.reached` states whether the
+        budget ended the search before, at `Region.resolution`. Default: cells are halved until the
         bracket is within ±6 % (of an area 2 %), or the budget ends.
     budget : int
         Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
@@ -251,7 +254,8 @@ def orientations(
     limits : Limits or None
         Default: the strokes of the design.
     resolution : float or None [rad]
-        Longest side of the cells of angles that may stay undecided. Default: as in `reachable`.
+        Longest side of the cells of angles that may stay undecided, as in `reachable`, which has
+        the default too.
     budget : int
         Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
         is not begun.

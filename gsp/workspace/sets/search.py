@@ -64,6 +64,7 @@ def position_region(
         domain,
         partial(_codes_of_points, decide, problem, rotations),
         all_rotations=problem.single_rotation or decide is dextrous_cells,
+        wanted=aim.resolution,
     )
 
 
@@ -85,7 +86,7 @@ def orientation_region(
     with meter(progress, "orientations") as report:
         leaves = grow(root, decide, turn_measure, aim, ARRAY_TASK, workers, report)
     single = partial(_codes_of_angles, problem, place)
-    return _region("orientations", problem, leaves, domain, single)
+    return _region("orientations", problem, leaves, domain, single, wanted=aim.resolution)
 
 
 # What a region keeps to decide on single points: functions of the module, which can be pickled.
@@ -122,6 +123,7 @@ def _region(
     decide: Callable[[Array], Codes],
     *,
     all_rotations: bool = False,
+    wanted: float | None,
 ) -> Region:
     d = 2 if kind == "plane" else 3
     leaves = leaves.undecided() if problem.unbounded_limits else leaves
@@ -137,4 +139,5 @@ def _region(
         leaves.nodes,
         decide,
         all_rotations,
+        wanted,
     )

@@ -16,7 +16,7 @@ from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.limits import Limits
-from gsp.progress import Progress
+from gsp.progress import Progress, during
 from gsp.proof.branching.requirements import with_maximum
 from gsp.workspace.sets.inside.poses import poses
 from gsp.workspace.sets.inside.summaries import index_summary, overall_values, satisfied
@@ -137,7 +137,8 @@ def index_sample(
             # The maximum by which `worst` and bounds of λ are measured.
             of_share = Limits(indices="quality_index >= 0", maximum=maximum)
             maximum = with_maximum(design, of_share).maximum
-    drawn = poses(region, count, rng)
+    with during("poses of the region"):
+        drawn = poses(region, count, rng)
     given = {**given, "maximum": maximum}
     table = evaluate(design, drawn, chosen, progress=progress, **given)
     values = {str(name): table[name].to_numpy(copy=True) for name in table.columns}

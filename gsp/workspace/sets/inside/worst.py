@@ -14,9 +14,10 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import moving_places, rotation_from_angles
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
+from gsp.indices import INDICES, index_name
 from gsp.limits import Limits
-from gsp.progress import Progress, meter
+from gsp.model.design import Design
+from gsp.progress import Progress, Report, meter
 from gsp.proof.branching.claims import value_at
 from gsp.proof.branching.requirements import with_maximum
 from gsp.proof.extremes import bounded_name, extreme, index_problem, is_closed
@@ -24,6 +25,9 @@ from gsp.workspace.sets.codes import INSIDE, OUTSIDE
 from gsp.workspace.sets.inside.patches import patches
 from gsp.workspace.sets.tree.cuts import boxes_beyond
 from gsp.workspace.sets.tree.verdicts import verdicts
+
+# The index that is σ_min of the homogeneous Jacobian; what rounding of a power may add to it.
+SMALLEST, POWER_ROUNDING = index_name("σ_min"), 1e-14
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -65,9 +69,9 @@ def worst(
     if not (region.codes == INSIDE).any():
         raise EmptyWorkspace(expected("region", "a whole cell that is proven inside", "none"))
     # That of the design itself: in the frame of the region it has no home pose.
-    limits = with_maximum(region.problem.design, Limits(indices=f"{name} >= 1", maximum=maximum))
+    design = region.problem.design
+    limits = with_maximum(design, Limits(indices=f"{name} >= 1", maximum=maximum))
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": limits.maximum}
-    problem, place, factor = index_problem(region.problem.design_in_frame, name, given)
     side = 1.0 if INDICES[name].better == "lower" else -1.0
     turns = region.problem.turns.flatten()
 
@@ -81,14 +85,38 @@ def worst(
     def counts(points: Array) -> Array:
         return np.asarray(region._decide(_coordinates(region, points)) == INSIDE)
 
-    options: dict[str, Any] = {"keep": keep, "counts": counts}
-    with meter(progress, "boxes") as report:
+    def search(quantity: str, options: dict[str, Any], report: Report) -> tuple[float, Pose]:
+        problem, place, factor = index_problem(region.problem.design_in_frame, quantity, options)
         end = extreme(
-            problem, turns, boxes, place, side, share, most + len(boxes), report=report, **options
-        )
-    pose, bound = _pose(region.problem, end.point), end.bound / factor
-    value = value_at(region.problem.design, pose, name, given)
+            problem, turns, boxes, place, side, share, most + len(boxes), report=report,
+            keep=keep, counts=counts,
+        )  # fmt: skip
+        return end.bound / factor, _pose(region.problem, end.point)
+
+    with meter(progress, "boxes") as report:
+        bound, pose = search(name, given, report)
+        value = value_at(design, pose, name, given)
+        if INDICES[name].of_determinant and not is_closed(bound, value, share):
+            scale = length or design.characteristic_length or design.rms_radius
+            least, other = search(SMALLEST, {**given, "length": scale}, report)
+            bound = max(bound, _determinant_from(least, scale, design, limits.maximum, name))
+            if (there := value_at(design, other, name, given)) < value:
+                value, pose = there, other
     return Worst(value=value, bound=bound, pose=pose, closed=is_closed(bound, value, share))
+
+
+def _determinant_from(
+    least: float, length: float, design: Design, maximum: float | None, name: str
+) -> float:
+    """Return what |det J|, or λ, is not below where σ_min is not below `least`.
+
+    |det J| = L^(3 − a) σ_1 … σ_6 ≥ L^(3 − a) σ_min⁶, where a counts angular actuators.
+
+    *Source: Golub and Van Loan, Matrix Computations, §2.4, for the product; the bound is ours*
+    """
+    power = 3 - sum(design.angular)
+    product = length**power * least**6 * (1.0 - POWER_ROUNDING)
+    return product / (maximum or 1.0) if INDICES[name].share_of else product
 
 
 def _possible(region: Any, boxes: Array) -> Array:

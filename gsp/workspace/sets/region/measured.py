@@ -166,10 +166,15 @@ class Measured(ReadOnly):
 
         *Source: ours; see docs/sets.md*
         """
-        given = check_array("points", points, (None,))
-        shape, width = given.shape[:-1], given.shape[-1]
+        given = check_array("points", points, ())
+        width = given.shape[-1] if given.ndim else 0
         if width != 3 and not (width == 2 and self.kind == "plane"):
-            raise InvalidInput(expected("points", "shape (..., 3)", f"shape {given.shape}"))
+            wanted = {"space": "x, y, z", "orientations": "three angles [rad]"}
+            numbers = wanted.get(self.kind, "x, y, z, or two coordinates along the plane")
+            shapes = "(..., 3) or (..., 2)" if self.kind == "plane" else "(..., 3)"
+            got = f"shape {given.shape}"
+            raise InvalidInput(expected("points", f"{numbers}: shape {shapes}", got))
+        shape = given.shape[:-1]
         flat = given.reshape(-1, width)
         local, beside = self._local(flat)
         codes = located(local, self.low, self.high, self.codes, self.domain, self.cuts)

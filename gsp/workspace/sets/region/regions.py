@@ -19,6 +19,8 @@ from gsp.workspace.sets.tree.boxes import components
 if TYPE_CHECKING:
     from gsp.workspace.sets.shapes.inscribed import Body, Inscribed
 
+# Sides of cells differ by at most this share of themselves from halves of the domain: rounding.
+SIDE_ROUNDING = 1e-12
 # Name of the measure of a region, by its kind.
 MEASURES = {"space": "volume", "plane": "area", "orientations": "volume"}
 
@@ -49,7 +51,22 @@ class Region(Posed):
         How often the domain was halved, and how many rotation cells were decided.
     all_rotations : bool
         Whether a position is inside only with all orientations of the range, or there is only one.
+    wanted : float or None [length, or rad]
+        The resolution that was asked for; `reached` states whether the search came so far.
     """
+
+    wanted: float | None = None
+
+    @property
+    def reached(self) -> bool:
+        """Whether nothing wider than the resolution that was asked for is undecided.
+
+        False where the budget ended the search before: `resolution` is what was reached. True where
+        no resolution was asked for.
+
+        *Source: ours; see docs/sets.md*
+        """
+        return self.wanted is None or self.resolution <= self.wanted * (1.0 + SIDE_ROUNDING)
 
     @kept_property
     def parts(self) -> tuple[Region, ...]:
@@ -159,4 +176,8 @@ class Region(Posed):
     def __repr__(self) -> str:
         low, high = self.bracket
         ends = f"[{rounded_down(low, 6):.6g}, {rounded_up(high, 6):.6g}]"
-        return f"Region({self.kind}, {MEASURES[self.kind]} in {ends})"
+        measure = f"{self.kind}, {MEASURES[self.kind]} in {ends}"
+        if self.reached:
+            return f"Region({measure})"
+        found = rounded_up(self.resolution, 3)
+        return f"Region({measure}, resolution {found:.3g}: {self.wanted:.3g} is not reached)"

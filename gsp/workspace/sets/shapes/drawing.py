@@ -10,7 +10,14 @@ import numpy as np
 
 from gsp.checks import has
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
-from gsp.figures import name_lengths, new_axes, require_matplotlib, style
+from gsp.figures import (
+    name_lengths,
+    new_axes,
+    require_matplotlib,
+    set_space_ticks,
+    style,
+    write_title,
+)
 from gsp.geometry.vectors import Array, cross, norm
 from gsp.rounding import rounded_down, rounded_up
 from gsp.workspace.sets.codes import UNDECIDED
@@ -32,8 +39,10 @@ OUTLINE: Mapping[str, Any] = MappingProxyType(
 )
 # Half of the width of that line as a share of the size of a region, and what is too small to see.
 LINE_SHARE, SLIVER_SHARE = 4e-3, 1e-5
+# Lines of a title for which a figure has room.
+USUAL_LINES = 5
 # Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
-MOST_TICKS = 6
+MOST_TICKS, DEGREE_STEPS = 6, (1, 1.5, 3, 4.5, 6, 9, 10)
 # Distances of a plane from zero below this share of the size of a region come from rounding.
 PLANE_ROUNDING = 1e-9
 
@@ -52,7 +61,8 @@ def draw(region: Any, ax: Axes | None) -> Axes:
         ax = new_axes(6.0, 5.4, **options) if ax is None else ax
         measure = _flat(region, ax) if region.kind == "plane" else _solid(region, ax)
         if not ax.get_title():
-            ax.set_title(f"{heading(region)}\n{measure}", fontsize="medium")
+            lines = f"{heading(region)}\n{measure}"
+            write_title(ax, lines, USUAL_LINES, fontsize="medium")
         return ax
 
 
@@ -79,20 +89,22 @@ def _flat(region: Any, ax: Axes) -> str:
     return _measure("area", region.area, region.problem.design.unit, "²")
 
 
-def draw_outline(region: Any, ax: Axes, filled: Iterable[Artist] = ()) -> None:
-    """Draw the outline of what is proven inside of a region in a plane.
+def draw_outline(region: Any, ax: Axes, filled: Iterable[Artist] = ()) -> list[Artist]:
+    """Draw the outline of what is proven inside of a region in a plane; return its legend entry.
 
-    `filled` are cut off where the plane is proven outside.
+    `filled` are cut off at the outline; where nothing is proven inside, where the plane is proven
+    outside.
     """
     from matplotlib.patches import PathPatch
 
     outline = polygons(region)
-    possible = _path(outline.possible)
-    for artist in filled if possible is not None else ():
-        artist.set_clip_path(possible, ax.transData)
-    path = _path(_outlined(outline))
-    if path is not None:
-        ax.add_patch(PathPatch(path, **OUTLINE))
+    path, possible = _path(_outlined(outline)), _path(outline.possible)
+    end = possible if path is None else path
+    for artist in filled if end is not None else ():
+        artist.set_clip_path(end, ax.transData)
+    if path is None:
+        return []
+    return [ax.add_patch(PathPatch(path, label="outline of what is proven inside", **OUTLINE))]
 
 
 def plane_labels(region: Any) -> tuple[str, str]:
@@ -189,9 +201,9 @@ def _solid(region: Any, ax: Any) -> str:
     name_lengths(ax, dict(zip("xyz", names, strict=True)), unit)
     sides = np.maximum(high - low, 1e-12)
     ax.set_box_aspect(sides)
-    for axis, side in zip((ax.xaxis, ax.yaxis, ax.zaxis), sides, strict=True):
-        # As many texts as fit beside a short side of the box.
-        axis.set_major_locator(_ticks(side / sides.max(), unit == "°"))
+    # As many texts as fit beside a short side of the box.
+    counts = [max(1, round(MOST_TICKS * side / sides.max())) for side in sides]
+    set_space_ticks(ax, counts, DEGREE_STEPS if unit == "°" else None)
     if region.kind == "orientations":
         title = f"{CONVENTION}\n{_between(*region.share)} of all orientations"
     else:
@@ -244,10 +256,3 @@ def _drawn(region: Any) -> str:
     """Return a line that states how much of a region in space is drawn, at least."""
     least = np.floor(1000.0 * region.volume[0] / region.volume[1]) / 10.0
     return f"drawn: what is proven inside, at least {least:g} % of it"
-
-
-def _ticks(share: float, degrees: bool) -> Any:
-    from matplotlib.ticker import MaxNLocator
-
-    count = max(1, round(MOST_TICKS * share))
-    return MaxNLocator(count, steps=[1, 1.5, 3, 4.5, 6, 9, 10] if degrees else None)

@@ -6,19 +6,18 @@ from typing import Any
 
 import numpy as np
 
+from gsp.figures import wrapped
 from gsp.geometry.rotations import moving_places
 from gsp.geometry.vectors import Array
 
 # Degrees and components that differ by less come from rounding.
 ROUNDING = 1e-9
-# Letters of a line up to which it is written whole: longer ones would make the axes smaller.
-HEADING_LETTERS = 60
 
 
 def heading(region: Any) -> str:
     """Return the lines that state what a region is of: design, plane, and orientations."""
     lines = [region.problem.design.name, _plane(region), _orientations(region)]
-    return "\n".join(_short(line) for line in lines if line)
+    return wrapped("\n".join(line for line in lines if line))
 
 
 def range_words(box: Array, order: str, *, some: bool) -> str:
@@ -71,8 +70,3 @@ def _orientations(region: Any) -> str:
 def _rounded(degrees: Any) -> Any:
     """Return degrees without what rounding adds, and without a minus before zero."""
     return np.round(degrees, 9) + 0.0
-
-
-def _short(line: str) -> str:
-    line = line if len(line) <= HEADING_LETTERS else line[: HEADING_LETTERS - 1].rstrip() + "…"
-    return line.replace("$", r"\$")  # no formula
