@@ -127,6 +127,13 @@ def test_rays_start_in_the_largest_component_where_no_middle_pose_is_known(gsp, 
     )
 
 
+def test_an_angle_without_a_workspace_is_named(gsp):
+    """Half a turn crosses the legs of this platform, which has equal triangles."""
+    error = gsp("planar", "lee-2000-planar", "--stroke", 0.3, 0.4, "--angle", 180).error
+    assert error.startswith("gsp: --angle: expected an angle at which the workspace has an interior")
+    assert error.endswith("received 180°, where it has none")
+
+
 def test_the_home_pose_is_stated_only_within_the_strokes(gsp):
     at_home = ("planar", "lee-2000-planar", "--position", 0, 0, "--rays", 2, "--no-connecting")
     # Each leg has the length 0.5 at home.

@@ -16,9 +16,9 @@ from gsp.cli.inputs.workspaces import check_stroke
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.planar import Results, report_planar
-from gsp.errors import EmptyWorkspace, InvalidInput
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.files.tables import check_table
-from gsp.planar import PlanarDesign
+from gsp.planar import PlanarComponent, PlanarDesign
 
 
 def planar(
@@ -148,7 +148,7 @@ def _radiating(
     At a fixed angle where that point is not feasible, or there is none, it is a point of the
     largest component, which is said, and the home is that of the design.
     """
-    from gsp.planar import planar_components, radiating_point
+    from gsp.planar import radiating_point
     from gsp.planar.outlines import inner_point
 
     home = design.base_points.mean(axis=0) if design.home is None else design.home.position
@@ -158,10 +158,7 @@ def _radiating(
     except EmptyWorkspace as error:
         failure = error
     if angle is not None and guess is None:
-        try:
-            parts = planar_components(design, angle)
-        except InvalidInput:  # no bounds of the positions: rays only
-            parts = ()
+        parts = _components(design, angle)
         inside = pose is not None and any(part.contains(pose.position) for part in parts)
         if parts and not inside:
             say("Radiating point in the largest component: no other is known at this angle")
@@ -172,3 +169,18 @@ def _radiating(
     # Its angle is feasible there, and so the first that rays start from.
     x, y = pose.position.tolist()
     return design.replace(home=pose), (x, y)
+
+
+def _components(design: PlanarDesign, angle: float) -> tuple[PlanarComponent, ...]:
+    """Return the components at an angle, none where nothing bounds the positions."""
+    from gsp.planar import planar_components
+
+    try:
+        parts = planar_components(design, angle)
+    except InvalidInput:
+        return ()
+    if not parts:
+        wanted = "an angle at which the workspace has an interior"
+        received = f"{np.rad2deg(angle):g}°, where it has none"
+        raise EmptyWorkspace(expected("--angle", wanted, received))
+    return parts
