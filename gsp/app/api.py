@@ -17,7 +17,7 @@ from starlette.exceptions import HTTPException as WrongRequest
 from gsp.app.searches import Search, Searches
 from gsp.app.state import choices, curves
 from gsp.app.state.reading import IndexReading, read
-from gsp.app.state.session import Session, started, with_length
+from gsp.app.state.session import MOST_DEGREES, Session, started, with_length
 from gsp.catalogue.placement import TEMPLATE
 from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError, InvalidInput, expected
@@ -26,8 +26,6 @@ from gsp.indices import INDICES, index_name, index_names
 from gsp.model.design import Design
 from gsp.version import __version__
 
-# Degrees up to which the rotation of an angle is more than rounding.
-MOST_DEGREES = 1e6
 # A number is no text and no bool.
 Finite = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Angle = Annotated[float, Field(ge=-MOST_DEGREES, le=MOST_DEGREES, strict=True)]
@@ -125,12 +123,14 @@ def make(searches: Searches) -> FastAPI:
 
     @app.exception_handler(RequestValidationError)
     async def malformed(request: Request, error: RequestValidationError) -> JSONResponse:
-        return JSONResponse({"error": _without_input(error)}, status_code=422)
+        reason = _without_input(error)
+        status = 400 if reason == NO_OBJECT else 422
+        return JSONResponse({"error": reason}, status_code=status)
 
     @app.exception_handler(WrongRequest)
     async def refused(request: Request, error: WrongRequest) -> JSONResponse:
         if error.status_code == 400:  # the body cannot be parsed
-            return JSONResponse({"error": NO_OBJECT}, status_code=422)
+            return JSONResponse({"error": NO_OBJECT}, status_code=400)
         return JSONResponse({"error": error.detail}, error.status_code, error.headers)
 
     @app.get("/api", include_in_schema=False)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import ipaddress
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping
+from contextlib import suppress
+from json import dumps
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -18,6 +20,8 @@ LOCAL = ("localhost", "127.0.0.1", "::1")
 WILDCARDS = ("0.0.0.0", "::", "")
 # Bytes of the body of a request: several times those of a design file.
 LARGEST_BODY = 1_500_000
+# Bytes of a body that is refused, and seconds, that are read before the answer is sent.
+MOST_DRAINED, SECONDS_TO_DRAIN = 64_000_000, 10.0
 # Sent with every answer. Scripts, styles and pictures of pages come from this server alone, also
 # where a name of a design would be taken for markup. Without a referrer to this server, forms would
 # have no Origin.
@@ -67,7 +71,11 @@ class Guard:
             await receive()
             await send({"type": "websocket.close", "code": 1008, "reason": reason})
         else:
-            await _answer(send, 413 if "body" in reason else 403, reason)
+            await _drain(receive)
+            status = 413 if "body" in reason else 403
+            # The interface of programs answers in JSON, as all of its errors are.
+            json = scope.get("path", "").startswith("/api")
+            await _answer(send, status, reason, json=json)
 
     def refusal(self, scope: Scope) -> str:
         """Return why a request is refused, or ""."""
@@ -142,11 +150,29 @@ def _until_the_end(receive: Receive) -> Receive:
     return received
 
 
-async def _answer(send: Send, status: int, text: str) -> None:
-    """Answer a request with one line."""
-    headers = [(b"content-type", b"text/plain; charset=utf-8")]
+async def _drain(receive: Receive) -> None:
+    """Read the body of a request that is refused, up to a size and a time.
+
+    Programs send all of a body before they read the answer: a connection that is closed meanwhile
+    is an error of the network for them, and the answer is lost.
+    """
+    size = 0
+    with suppress(TimeoutError):
+        async with asyncio.timeout(SECONDS_TO_DRAIN):
+            while size <= MOST_DRAINED:
+                message = await receive()
+                size += len(message.get("body", b""))
+                if message["type"] != "http.request" or not message.get("more_body", False):
+                    return
+
+
+async def _answer(send: Send, status: int, text: str, *, json: bool = False) -> None:
+    """Answer a request with one line, or with the object {"error": text}."""
+    kind = b"application/json" if json else b"text/plain; charset=utf-8"
+    headers = [(b"content-type", kind)]
+    body = dumps({"error": text}) if json else f"{text}\n"
     await send({"type": "http.response.start", "status": status, "headers": headers})
-    await send({"type": "http.response.body", "body": f"{text}\n".encode()})
+    await send({"type": "http.response.body", "body": body.encode()})
 
 
 def _same(origin: str, host: str) -> bool:

@@ -97,17 +97,17 @@ def test_rank_and_maximum(app):
         ("evaluate", {"design": "\ud800"}),
         ("evaluate", {"design": TOZ, "\ud800": 1}),
         ("evaluate", {"design": ".".join("a" * 50_000) + " = 1\n"}),
-        ("rank", []),
         ("evaluate", {"design": TOZ, "length": True}),
         ("evaluate", {"design": TOZ, "position": ["1", "2", "3"]}),
-        ("evaluate", {"design": TOZ, "position": [1, 2, 3], "rpy_deg": [0, 0, 1e17]}),
+        ("evaluate", {"design": TOZ, "position": [1, 2, 3], "rpy_deg": [0, 0, 3601.0]}),
         ("maximum", {"design": "x\n" * 200_000}),
     ],
     ids=lambda value: str(value)[:60],
 )
 def test_what_cannot_be_used(app, path, body):
     status, found = asked(app, f"/api/{path}", body)
-    assert status == 422
+    # A name with half of a character cannot be read.
+    assert status == (400 if "\ud800" in body else 422)
     assert found["error"]
 
 
@@ -140,7 +140,7 @@ def test_other_paths_and_methods_are_errors(app, method, path, status):
 )  # fmt: skip
 def test_a_body_that_is_no_json_object(app, content, kind):
     answer = sent(app, "POST", "/api/maximum", content=content, kind=kind)
-    assert (answer.status_code, answer.json()) == (422, {"error": api.NO_OBJECT})
+    assert (answer.status_code, answer.json()) == (400, {"error": api.NO_OBJECT})
 
 
 def test_all_indices_as_a_text_and_infinite_ones(app):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import importlib.resources
+import json
 import re
 import urllib.error
 import urllib.request
@@ -228,8 +229,47 @@ def test_an_unknown_address_is_no_page_of_the_tool(served, path):
         assert answer.status == 200
 
 
-# Faults that axe finds, with the elements; menus of Quasar are beside all landmarks.
-AXE = """axe.run(document, {resultTypes: ['violations'], rules: {region: {enabled: false}}}).then(
+# Lines of each number below the scene, if det J has as many letters as it can.
+LINES = """(() => {
+  const facts = [...document.querySelectorAll('.gsp-facts')].find((e) => e.offsetWidth);
+  facts.querySelector('dd').innerText = '−1.234568e−05';
+  return [...facts.querySelectorAll('.gsp-fact > dd:not(.gsp-share)')].map((e) => {
+    const range = document.createRange();
+    range.selectNodeContents(e);
+    return new Set([...range.getClientRects()].map((box) => box.top)).size;
+  });
+})()"""
+# Whether what is in the column of notes, and below the names, is seen in the ranking.
+NOTES = """['td:nth-child(5)', '.gsp-under'].map(
+  (part) => [...document.querySelectorAll(`.gsp-ranking ${part}`)].some((e) => e.offsetWidth))"""
+
+
+def test_numbers_are_not_broken_and_notes_have_a_place_at_the_width_of_a_phone(visit):
+    async def work(tab):
+        await tab.click("tab", "Catalogue")
+        await tab.click("button", "Rank at this pose")
+        await tab.until(f"{TEXT}.includes('have no value')")
+        for width, notes in ((1366, [True, False]), (390, [False, True])):
+            size = {"width": width, "height": 844, "deviceScaleFactor": 1, "mobile": False}
+            await tab.send("Emulation.setDeviceMetricsOverride", **size)
+            await tab.until(f"window.innerWidth === {width}")
+            assert set(await tab.run(LINES)) == {1}
+            assert await tab.run(NOTES) == notes
+            assert await tab.run("document.documentElement.scrollWidth") == width
+
+    visit(work)
+
+
+def test_a_body_of_megabytes_gets_an_answer(served):
+    request = urllib.request.Request(f"{served[0]}/api/evaluate", b"x" * 3_000_000, method="POST")
+    with pytest.raises(urllib.error.HTTPError) as found:
+        urllib.request.urlopen(request)
+    assert found.value.code == 413
+    assert "at most" in json.loads(found.value.read())["error"]
+
+
+# Faults that axe finds, with the elements.
+AXE = """axe.run(document, {resultTypes: ['violations']}).then(
   (found) => found.violations.map((one) => [one.id, one.nodes.map((node) => node.html)]))"""
 
 
@@ -253,6 +293,10 @@ def test_an_accessibility_checker_finds_nothing(visit):
             await check()
             await tab.key("Escape", 27)
             await tab.until("!document.querySelector('.q-dialog')")
+        await tab.click("button", "File")
+        await tab.named("menuitem", "Copy a link to this state")
+        await check()
+        await tab.key("Escape", 27)
         # It can find something.
         await tab.run("document.querySelector('[aria-label=\"Save the picture\"]').ariaLabel = ''")
         assert [rule for rule, _ in await tab.run(AXE)] == ["button-name"]

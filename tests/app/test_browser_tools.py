@@ -12,6 +12,7 @@ import pytest
 import gsp
 from tests.app import chromium
 from tests.app.visiting import FACTS, SIX_THREE, TEXT
+from tests.app.webm import pictures
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytestmark = pytest.mark.skipif(
@@ -128,13 +129,29 @@ def test_modes_workspace_and_motion(visit, tmp_path):
         for one in (frames[0], frames[-1]):
             assert len(np.unique(one.reshape(-1, 3), axis=0)) > 100
         assert (frames[0] != frames[-1]).any(axis=-1).mean() > 0.005
+        # A page that is not in view: the film is not begun, and the note states why.
+        hidden = "Object.defineProperty(document, 'hidden', {configurable: true, get: () => %s})"
+        await tab.run(hidden % "true" + ".hidden")
+        for kind in ("GIF", "video"):
+            await tab.click("button", f"Save the motion as {kind}")
+            await tab.until(f"{TEXT}.includes('the page was not in view')")
+        await tab.run(hidden % "false" + ".hidden")
         await tab.click("button", "Save the motion as video")
         film = await downloaded(tmp_path, f"{SIX_THREE}.webm")
         assert film[:4] == bytes([0x1A, 0x45, 0xDF, 0xA3])  # EBML
+        # As large as the pictures of the GIF; a recorder drops some where a machine is busy.
+        width, height, times = pictures(film)
+        assert (height, width) == frames[0].shape[:2]
+        assert len(times) > 3
+        assert times == sorted({*times})
         await tab.click("button", "Save the motion as a table")
         table = (await downloaded(tmp_path, f"{SIX_THREE}-motion.csv")).decode()
         rows = [line.split(",") for line in table.splitlines()]
         assert rows[0][:4] == ["time", "x", "y", "z"]
         assert float(rows[1][3]) == pytest.approx(design.home.position[2])
+        seconds = float(rows[-1][0]) - float(rows[1][0])
+        # As long as the motion at least, or the note states what is missing.
+        whole = times[-1] - times[0] >= 1000.0 * seconds * (1.0 - 1.0 / len(frames))
+        assert whole or "the browser was too slow" in await tab.run(TEXT)
 
     visit(work)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 
 import pytest
 
@@ -95,6 +96,28 @@ def test_no_part_of_another_page(site, mode, dest, wanted):
 def test_great_requests_are_refused(headers):
     assert sent(**headers) == 413
     assert sent(content_length=str(LARGEST_BODY)) == "passed"
+
+
+def test_the_body_of_a_refused_request_is_read_and_the_answer_to_programs_is_json():
+    """Else the program that sends it gets an error of the network, and no answer."""
+    parts = [b"x" * 1_000_000] * 3
+    answers = []
+
+    async def receive():
+        body = parts.pop()
+        return {"type": "http.request", "body": body, "more_body": bool(parts)}
+
+    async def send(message):
+        assert not parts
+        answers.append(message)
+
+    headers = [(b"host", b"localhost"), (b"content-length", b"3000000")]
+    scope = {"type": "http", "path": "/api/evaluate", "headers": headers}
+    asyncio.run(Guard(None, ["localhost"])(scope, receive, send))
+    assert answers[0]["status"] == 413
+    assert (b"content-type", b"application/json") in answers[0]["headers"]
+    found = json.loads(answers[1]["body"])
+    assert found == {"error": f"body: expected at most {LARGEST_BODY} bytes"}
 
 
 def test_a_server_that_ends_answers_what_it_cancels():

@@ -118,6 +118,7 @@ def configuration_dialog(client: Client) -> ui.dialog:
 
 
 def _lee(client: Client, dialog: ui.dialog) -> None:
+    ui.label(choices.SIZES).classes("gsp-note")
     with ui.element("div").classes("gsp-halves"):
         halves = {
             "Top": _half("Top", choices.TOP_SIZE),

@@ -6,6 +6,9 @@ from collections.abc import Callable
 
 from nicegui import ui
 
+# What is rounding of a coordinate, as a share of the range in which it is.
+FIELD_ROUNDING = 1e-12
+
 
 class NumberField:
     """A field whose entry is taken by Enter, or when the focus leaves it.
@@ -67,6 +70,15 @@ class NumberField:
         if self._take is not None and self.text != self._shown:
             self._take(self.text)
             self.restore()
+
+
+def resolved(value: float, scale: float) -> float:
+    """Return a number, 0 where it is nearer to zero than the rounding of numbers of a scale.
+
+    >>> resolved(-3.97569e-16, 2.0), resolved(-3.97569e-16, 1e-15), resolved(0.5, 2.0)
+    (0.0, -3.97569e-16, 0.5)
+    """
+    return 0.0 if abs(value) <= FIELD_ROUNDING * scale else value
 
 
 def words(value: float | None) -> str:

@@ -55,6 +55,13 @@ ARROWS = """(event) => {
   const here = Math.max(items.indexOf(document.activeElement), way > 0 ? -1 : 0);
   items.at((here + way) % items.length).focus();
 }"""
+# Quasar puts a menu at the end of the page, beside all landmarks of screen readers: it is one.
+LANDMARK = """() => requestAnimationFrame(() => {
+  for (const menu of document.querySelectorAll("[id^=q-portal--menu]")) {
+    menu.role = "region";
+    menu.ariaLabel = "Menu";
+  }
+})"""
 
 # Where the page has one column, the panel of a tab may be below the screen.
 INTO_VIEW = """(event) => {
@@ -192,7 +199,7 @@ def _file_menu(client: Client) -> None:
     dialog = file_dialog("Open a design file", "Design file", ".toml", choices.LARGEST_FILE, opened)
     with (
         ui.button("File", icon="folder").props("flat text-color=white dense") as button,
-        ui.menu().on("keydown", js_handler=ARROWS),
+        ui.menu().on("keydown", js_handler=ARROWS).on("before-show", js_handler=LANDMARK),
     ):
         for text, call in (
             ("Open a design file …", dialog.open),

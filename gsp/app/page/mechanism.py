@@ -8,6 +8,7 @@ from typing import Any
 import nicegui
 from nicegui import ui
 
+from gsp.app.page.fields import resolved
 from gsp.app.scene.drawing import drawing, placement
 from gsp.app.scene.modes import Modes, ghosts
 from gsp.app.scene.region import Surface
@@ -90,7 +91,7 @@ class MechanismView(
                 "film", kind, places, seconds, name, timeout=SECONDS_FOR_FILM
             )
         except TimeoutError:
-            return "the browser did not finish the film"
+            return "the browser did not finish the film; pages that are not in view hardly work"
         return str(reason)
 
     def save(self, name: str) -> None:
@@ -103,7 +104,7 @@ class MechanismView(
     def _keep(self, state: Session, reading: Reading, colour: str) -> None:
         """Keep the place, for browsers that load the page again."""
         place: dict[str, Any] = placement(state, reading, colour)
-        words = ", ".join(f"{x:.4g}" for x in state.pose.position)
+        words = ", ".join(f"{resolved(x, state.size):.4g}" for x in state.pose.position.tolist())
         unit = f" {state.design.unit}" if state.design.unit else ""
         self._props["place"] = place
         self._props["label"] = (

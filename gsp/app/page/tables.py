@@ -35,11 +35,9 @@ def facts(state: Session, reading: Reading) -> str:
     """Return the facts below the scene: det J, λ, CTN, CDN_CL, and what is left of the strokes."""
     unit = reading.index("manipulability").unit
     bracket = "" if unit in ("1", "mixed") else f" [{powers(unit)}]"
-    values = [(f"det J{bracket}", reading.determinant)]
-    values += [
-        (reading.index(name).index.symbol, reading.index(name).value)
-        for name in ("quality_index", "control_number", "condition_number")
-    ]
+    values = [(f"det J{bracket}", _resolved(reading.determinant, reading.singular))]
+    shown = [reading.index(n) for n in ("quality_index", "control_number", "condition_number")]
+    values += [(one.index.symbol, one.value) for one in shown]
     least, near = reading.least, reading.index("singularity_distance")
     cells = [(name, number(value, 7 if name.startswith("det") else 5)) for name, value in values]
     gauges = {}
@@ -60,6 +58,11 @@ def facts(state: Session, reading: Reading) -> str:
         for name, value in cells
     )
     return f'<dl class="gsp-facts" style="margin:0">{body}</dl>'
+
+
+def _resolved(value: float, singular: bool) -> float:
+    """Return a number that is zero where a posture is singular: what is left of it is rounding."""
+    return 0.0 if singular and np.isfinite(value) else value
 
 
 def least_left(reading: Reading) -> str:
@@ -215,6 +218,7 @@ def matrix(values: Array, state: Session, form: str) -> str:
     value = determinant_of(values)
     if np.isnan(value):
         return shown
+    value = _resolved(value, bool(state.design.at(state.pose).singular()))
     return f'{shown}<p class="gsp-note">determinant of this matrix: {number(value, 7)}</p>'
 
 

@@ -18,6 +18,12 @@ from gsp.model.design.designs import design_from_toml
 
 # The design of figures 40 and 41 of the dissertation opens with these.
 TOP_SIZE, BASE_SIZE = 15.0, 30.0
+# Sizes of both, and what they are.
+SIZE_RANGE = (1e-6, 1e6)
+SIZES = (
+    "The size of top and base is the side of its triangle, from 1e-6 to 1e6. The joints of a "
+    "hexagon are separated at the vertices of that triangle."
+)
 TRIANGLE, HEXAGON = "triangle", "hexagon"
 TYPES = (TRIANGLE, HEXAGON)
 EDGES, CENTRE, SIDE = "along both edges", "toward the centre", "along one side"
@@ -38,7 +44,8 @@ class Half:
     ----------
     kind : "triangle" or "hexagon"
     size : float [unit]
-        Side of the triangle.
+        Side of the triangle; of a hexagon that of the triangle from whose vertices its joints are
+        separated. In `SIZE_RANGE`, for top and base.
     separation : one of `SEPARATIONS`
         Of the two joints at a vertex; without effect for a triangle.
     percent : float [%]
@@ -165,8 +172,10 @@ def _check_half(half: Half, what: str) -> None:
     if half.kind not in TYPES or half.separation not in SEPARATIONS:
         wanted = f"{' or '.join(TYPES)}; {', '.join(SEPARATIONS)}"
         raise InvalidInput(expected(what, wanted, f"{half.kind}, {half.separation}"))
-    if not 0.0 < half.size <= 1e6:
-        raise InvalidInput(expected(f"size of the {what}", "a number in (0, 1e6]", half.size))
+    least, most = SIZE_RANGE
+    if not least <= half.size <= most:
+        wanted = f"a number from {least:g} to {most:g}"
+        raise InvalidInput(expected(f"size of the {what}", wanted, half.size))
     if not 0.0 <= half.percent <= 100.0:
         raise InvalidInput(
             expected(f"joint separation of the {what}", "a percentage in [0, 100]", half.percent)

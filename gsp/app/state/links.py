@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 import numpy as np
 
 from gsp.app.state import choices
-from gsp.app.state.session import Session, check_place, started, with_length
+from gsp.app.state.session import Session, check_angles, check_place, started, with_length
 from gsp.catalogue import design as published
 from gsp.catalogue import design_names
 from gsp.catalogue.placement import TEMPLATE
@@ -139,6 +139,7 @@ def restored(words: Mapping[str, str], default: Design) -> Session:
             pose = Pose.from_quaternion(position, _numbers("rotation", words["rotation"], 4))
         else:
             angles = _numbers("rpy_deg", words.get("rpy_deg", "0,0,0"), 3)
+            check_angles(angles)
             pose = Pose.from_rpy(position, angles, degrees=True)
         state = started(design, pose)
         check_place(state, state.pose.position)

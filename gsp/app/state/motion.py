@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.app.state.session import PLATFORM, Session, check_place, started
+from gsp.app.state.session import PLATFORM, Session, check_angles, check_place, started
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.frames import log3
 from gsp.geometry.matrices import determinant_sign
@@ -55,12 +55,13 @@ def placed(state: Session, values: ArrayLike) -> Session:
     Raises
     ------
     InvalidInput
-        On numbers that are not finite, or positions that `check_place` refuses.
+        On numbers that are not finite, or what `check_place` and `check_angles` refuse.
     """
     given = np.asarray(values, dtype=np.float64)
     if given.shape != (6,) or not np.isfinite(given).all():
         raise InvalidInput(expected("pose", "six finite numbers", str(given.tolist())))
     check_place(state, given[:3])
+    check_angles(given[3:])
     return toward(state, Pose.from_rpy(given[:3], given[3:], degrees=True))
 
 

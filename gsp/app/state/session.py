@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gsp.determinant import Maximum
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
@@ -19,6 +20,11 @@ FRAMES = (BASE, PLATFORM)
 STEP_SHARE, TURN_DEG = 0.05, 5.0
 # Greatest increments and coordinates, in sizes of the design.
 FARTHEST_SIZES = 1e4
+# Least increments and lengths, in sizes of the design and degrees: smaller ones change no number
+# that is shown.
+LEAST_SIZES, LEAST_DEGREES = 1e-9, 1e-9
+# Angles of an entry: ten turns. The rotation of an angle of 1e17 degrees would be rounding.
+MOST_DEGREES = 3600.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -112,6 +118,19 @@ def check_place(state: Session, position: Array) -> None:
         raise InvalidInput(expected("pose", wanted, str(position.tolist())))
 
 
+def check_angles(degrees: ArrayLike) -> None:
+    """Check that angles [degrees] are at most ten turns.
+
+    Raises
+    ------
+    InvalidInput
+    """
+    given = np.asarray(degrees, dtype=np.float64)
+    if not (np.abs(given) <= MOST_DEGREES).all():
+        wanted = f"angles between -{MOST_DEGREES:g}° and {MOST_DEGREES:g}°"
+        raise InvalidInput(expected("pose", wanted, str(given.tolist())))
+
+
 def entered(what: str, text: str) -> float:
     """Return the number of an entry.
 
@@ -139,13 +158,13 @@ def entered_or_none(what: str, text: str) -> float | None:
 
 def with_step(state: Session, step: float) -> Session:
     """Return the state with another increment of positions [unit of the design]."""
-    value = _positive("increment of positions", step, FARTHEST_SIZES * state.size)
+    value = _positive("increment of positions", step, *_lengths(state))
     return replace(state, step=value, message="")
 
 
 def with_turn(state: Session, turn_deg: float) -> Session:
     """Return the state with another increment of rotations [degrees]."""
-    value = _positive("increment of rotations", turn_deg, 180.0)
+    value = _positive("increment of rotations", turn_deg, LEAST_DEGREES, 180.0)
     return replace(state, turn_deg=value, message="")
 
 
@@ -153,7 +172,7 @@ def with_length(state: Session, length: float | None) -> Session:
     """Return the state with another characteristic length [unit of the design]; None for none."""
     if length is None:
         return replace(state, length=None, message="")
-    value = _positive("characteristic length", length, FARTHEST_SIZES * state.size)
+    value = _positive("characteristic length", length, *_lengths(state))
     return replace(state, length=value, message="")
 
 
@@ -209,7 +228,12 @@ def common_strokes(state: Session) -> tuple[float | None, float | None]:
     return low, high
 
 
-def _positive(what: str, value: float, most: float) -> float:
-    if not 0.0 < value <= most:
-        raise InvalidInput(expected(what, f"a number above 0 and at most {most:.3g}", value))
+def _lengths(state: Session) -> tuple[float, float]:
+    """Return the least and the greatest length that is taken [unit of the design]."""
+    return LEAST_SIZES * state.size, FARTHEST_SIZES * state.size
+
+
+def _positive(what: str, value: float, least: float, most: float) -> float:
+    if not least <= value <= most:
+        raise InvalidInput(expected(what, f"a number from {least:.3g} to {most:.3g}", value))
     return float(value)

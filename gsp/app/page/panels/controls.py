@@ -10,7 +10,7 @@ from nicegui import ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
-from gsp.app.page.fields import NumberField
+from gsp.app.page.fields import NumberField, resolved
 from gsp.app.page.panels.modes import modes_section
 from gsp.app.state import motion
 from gsp.app.state import session as sessions
@@ -79,7 +79,7 @@ class Row:
             self.slider.props.update(ends)
             self.slider.update()
         self.slider.value = float(np.clip(np.nan_to_num(value, nan=low), low, high))
-        self.field.show(value)
+        self.field.show(resolved(value, max(abs(low), abs(high))))
 
     def enable(self, able: bool) -> None:
         """Allow or forbid changes."""

@@ -100,13 +100,14 @@ def _ranking_table() -> ui.table:
     """Return an empty table of mechanisms, of which a click on a name emits "load"."""
     columns: list[dict[str, Any]] = [dict(column) for column in COLUMNS]
     table = ui.table(columns=columns, rows=[], row_key="name", pagination=ROWS_PER_PAGE)
-    table.classes("gsp-wide").props("dense flat hide-no-data binary-state-sort")
+    table.classes("gsp-wide gsp-ranking").props("dense flat hide-no-data binary-state-sort")
     table.props[":sort-method"] = SORT
     table.add_slot("header-cell", HEAD)
     table.add_slot(
         "body-cell-name",
         '<q-td :props="props"><q-btn flat dense no-caps color="primary" :label="props.row.name" '
-        "@click=\"$parent.$emit('load', props.row.name)\" /></q-td>",
+        "@click=\"$parent.$emit('load', props.row.name)\" />"
+        '<div v-if="props.row.why" class="gsp-under">{{ props.row.why }}</div></q-td>',
     )
     return table
 

@@ -17,6 +17,7 @@ from gsp.app.state.recording import LARGEST_TABLE, Recording, from_table
 
 # Seconds between two frames that are played.
 PLAY_STEP = 0.05
+MAKING = "processing: the browser makes the film; keep this page in view until it is saved"
 IDLE, RECORDING, PLAYING = "", "recording", "playing"
 
 
@@ -152,7 +153,7 @@ def _saves(deck: Deck, view: MechanismView, name: Callable[[], str]) -> list[ui.
 
     async def film(kind: str) -> None:
         places = frames(deck.client.state, deck.motion.frames(), deck.client.colour_by)
-        deck.note = "processing: the browser makes the film"
+        deck.note = MAKING
         deck.show()
         reason = await view.film(kind, places, deck.motion.seconds, name())
         deck.note = reason or f"{len(places)} frames were saved"

@@ -43,6 +43,11 @@ export function snapshot(scene, scale = window.devicePixelRatio, canvas = docume
   return canvas;
 }
 
+// Browsers draw pages that are not in view about once per second or not at all: the film would wait.
+function inView() {
+  if (document.hidden) throw new Error("the page was not in view, where browsers draw no film; keep it in view");
+}
+
 export async function film(scene, kind, places, seconds, name) {
   const { clientWidth: width, clientHeight: height } = scene.root;
   const scale = Math.min(1, LONGEST_SIDE / Math.max(width, height));
@@ -69,6 +74,7 @@ function chosen(places, delay) {
 async function animation(scene, canvas, places, scale, delay) {
   const frames = [], [shown, pause] = chosen(places, delay);
   for (const place of shown) {
+    inView();
     scene.move(place);
     const { width, height } = snapshot(scene, scale, canvas);
     frames.push(canvas.getContext("2d").getImageData(0, 0, width, height).data);
@@ -88,6 +94,7 @@ async function video(scene, canvas, places, scale, delay) {
   recorder.start();
   const start = performance.now();
   const show = async (place) => {
+    inView();
     scene.move(place);
     snapshot(scene, scale, canvas);
     await new Promise((done) => setTimeout(done, pause));
