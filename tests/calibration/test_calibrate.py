@@ -55,6 +55,40 @@ def test_42_parameters_from_full_poses():
     assert found.degrees_of_freedom == 40 * 6 - 42
 
 
+def test_a_published_machine_from_its_nominal_dimensions():
+    """`Viso`, after Nategh and Agheli: anchors that are 3.6 to 6.1 mm off, lengths up to 4.8 mm."""
+    nominal = gsp.catalogue.design("nategh-agheli-nominal")
+    real = gsp.catalogue.design("nategh-agheli-real")
+    lengths = [604.4299, 607.2473, 600.4441, 605.9031, 604.5251, 600.0616]
+    zeros = np.array(lengths) - 604.8652
+    box = gsp.PoseBox.around(nominal.home, [150.0] * 3 + [0.3] * 3)
+    poses, others = box.sample(20, rng=3), box.sample(200, rng=4)
+    wanted = np.hstack((real.base_points, real.platform_points, zeros[:, None]))
+
+    def calibrated(noise):
+        given = readings_of(real, zeros, poses)
+        given = given + np.random.default_rng(0).normal(0.0, noise, given.shape)
+        found = gsp.calibrate(nominal, given, poses, joint_errors=0.002)
+        assert found.converged
+        assert found.not_identified == ()
+        sides = found.design.base_points, found.design.platform_points, found.zero_points[:, None]
+        return found, np.hstack(sides) - wanted
+
+    def worst_reading(design, offsets):
+        """At poses that no calibration has."""
+        apart = readings_of(design, offsets, others) - readings_of(real, zeros, others)
+        return np.abs(apart).max()
+
+    exact, errors = calibrated(0.0)
+    np.testing.assert_allclose(errors, 0.0, atol=1e-8)
+    found, errors = calibrated(0.002)
+    assert np.abs(errors).max() < 0.15
+    away = found.deviations - exact.deviations
+    assert 1e-3 < chi2.cdf(away @ np.linalg.solve(found.covariance, away), 42) < 1 - 1e-3
+    assert worst_reading(nominal, 0.0) > 10.0
+    assert worst_reading(found.design, found.zero_points) < 0.01
+
+
 def test_lines_and_angles_from_full_poses():
     """A point along its line changes no distance to the line, and is not identified."""
     nominal = random_design(np.random.default_rng(3), MIXED)
