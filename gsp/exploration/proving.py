@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from typing import Any, NamedTuple
 
 from gsp.evaluation.parts import Parts
 from gsp.evaluation.request import Request
+from gsp.evaluation.scheduling import run_all
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.volumes import volume_row, volumes
 from gsp.geometry.pose import PoseBox
@@ -68,8 +70,36 @@ def proof_rows(
 def _volume_rows(
     request: Request, task: Task, wish: Wanted, proofs: Proofs, designs: Mapping[int, Design]
 ) -> Iterator[tuple[int, dict[str, Any]]]:
-    for number, design in designs.items():
-        yield number, volume_row(design, task, wish, proofs.cells, request.workers)
+    """Yield the columns of volumes: one design after another, or one per task of an executor."""
+    at_once, threads = shared(request.workers, request.executor)
+    tasks = [_Volume(*one, task, wish, proofs.cells, threads) for one in designs.items()]
+    for asked, row in run_all(
+        _volume, iter(tasks), len(tasks), workers=at_once, executor=request.executor
+    ):
+        yield asked.number, row
+
+
+def shared(workers: int | None, executor: Executor | None) -> tuple[int | None, int | None]:
+    """Return how many searches run at once, and the threads of each.
+
+    A search has threads of its own, so without an executor there is one after another.
+    """
+    return (1, workers) if executor is None else (workers, 1)
+
+
+class _Volume(NamedTuple):
+    """The arguments of `volume_row`, with the number of the design."""
+
+    number: int
+    design: Design
+    task: Task
+    wish: Wanted
+    cells: int
+    workers: int | None
+
+
+def _volume(asked: _Volume) -> dict[str, Any]:
+    return volume_row(*asked[1:])
 
 
 def _proven_rows(

@@ -122,9 +122,9 @@ class Task(ReadOnly):
     wrench : (6,) array_like or None [N, N · unit]
         Another force and moment on the platform, about its origin, in base axes.
     resolution : float or None [unit]
-        Longest side of the cells of a workspace that may stay undecided, where a volume is wanted.
-        Default: cells are halved until the bracket is within ±6 % (dextrous 3 %), or the budget
-        ends.
+        Longest side of the cells of a workspace that may stay undecided, where a volume is wanted
+        or required by `optimise`; otherwise it has no effect. Default: cells are halved until the
+        bracket is within ±6 % (dextrous 3 %), or the budget ends.
     unit : str
         Unit of length of the numbers; "" for that of the designs.
     name : str
@@ -137,7 +137,7 @@ class Task(ReadOnly):
     ------
     InvalidInput
         On arguments of a wrong type or value, nothing wanted, the same wanted twice, a proven
-        worst value or a volume without a box, or a resolution without a volume.
+        worst value, a volume or a resolution without a box.
     UnknownIndex
         On the name of no index, or of one without proven bounds where these are wanted.
 
@@ -180,9 +180,10 @@ class Task(ReadOnly):
         if self.resolution is not None:
             resolution = check_positive("task.resolution", self.resolution)
             object.__setattr__(self, "resolution", resolution)
-            if "volume" not in kinds:
-                got = f"{resolution} and no volume among what is wanted"
-                raise InvalidInput(expected("task.resolution", "none without a volume", got))
+            if not isinstance(poses, PoseBox):
+                got = f"{resolution} and a {type(poses).__name__}"
+                wish = "none without a PoseBox, over whose angles volumes are"
+                raise InvalidInput(expected("task.resolution", wish, got))
         if self.limits is not None:
             check_type("task.limits", self.limits, Limits)
         if self.ellipsoid is not None:

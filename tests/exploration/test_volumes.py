@@ -1,5 +1,8 @@
 """Volumes of workspaces that a task asks for: brackets, scores, optimisation, and bad input."""
 
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -137,6 +140,47 @@ def test_volumes_are_objectives_and_bounds_of_an_optimisation():
         optimise(SPACE, other, require={"volume dextrous": bound}, evaluations=2, budget=500)
 
 
+class Counting(ThreadPoolExecutor):
+    """Counts the tasks that it gets, and states what they compute."""
+
+    def __init__(self):
+        super().__init__(1)
+        self.done = []
+
+    def submit(self, function, /, *given):
+        self.done.append(function.__name__)
+        return super().submit(function, *given)
+
+
+def test_volumes_and_certificates_run_on_an_executor():
+    """One task per design, with arguments that other processes can take."""
+    wish = task(wanted=["mean CTN", "volume dextrous"], resolution=0.8)
+    whole = explore(SPACE, wish, 3, seed=1)
+    with Counting() as executor:
+        found = explore(SPACE, wish, 3, seed=1, executor=executor)
+        pd.testing.assert_frame_equal(found, whole, check_exact=True)
+        assert executor.done.count("_volume") == 3
+        limits = gsp.Limits()
+        sure = gsp.Task(poses=LEVEL, wanted="mean CTN", samples=5, limits=limits)
+        options = {"certify": True, "method": "evolution", "evaluations": 10, "seed": 1}
+        best = optimise(SPACE, sure, executor=executor, **options)
+        assert executor.done.count("_proved") > 1
+    again = optimise(SPACE, sure, **options)
+    pd.testing.assert_frame_equal(best, again, check_exact=True)
+    assert best["certified"].all()
+    assert record_of(pickle.loads(pickle.dumps(wish))) == record_of(wish)
+
+
+def test_a_bound_on_a_volume_has_the_resolution_of_the_task():
+    """Also where no volume is among what is wanted."""
+    for resolution in (0.4, 0.2):
+        wish = task(wanted="mean CTN", resolution=resolution)
+        bound = {"volume reachable": 1e-5}
+        row = optimise(SPACE, wish, method="evolution", evaluations=2, require=bound).iloc[0]
+        assert resolution / 2 < row["reachable_volume_resolution"] <= resolution
+        assert row["reachable_volume_low"] >= 1e-5
+
+
 def test_volumes_are_objectives_of_fronts():
     columns = {"reachable_volume_low": [1.0, 2.0, 1.5], "control_number_mean": [0.3, 0.1, 0.05]}
     table = pd.DataFrame(columns)
@@ -156,8 +200,8 @@ def test_a_task_with_a_volume_is_written_and_read(tmp_path):
 def test_bad_input():
     with pytest.raises(InvalidInput, match="a PoseBox, as a volume is wanted"):
         task(gsp.Pose([[0.0, 0.0, 1.5]]))
-    with pytest.raises(InvalidInput, match="none without a volume"):
-        task(wanted="mean CTN")
+    with pytest.raises(InvalidInput, match=r"none without a PoseBox, .* received 0.4 and a Pose"):
+        task(gsp.Pose([[0.0, 0.0, 1.5]]), wanted="mean CTN")
     for value in (0.0, -1.0, np.inf, "fine"):
         with pytest.raises(InvalidInput, match="resolution"):
             task(resolution=value)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gsp.errors import GspError
 from gsp.evaluation.parts import Parts
+from gsp.evaluation.scheduling import run_all
 from gsp.exploration.assessing import Run, assessed, checked, requested
 from gsp.exploration.optimisation.goals import CERTIFIED, Goals
-from gsp.exploration.proving import Proofs
+from gsp.exploration.proving import Proofs, shared
 from gsp.exploration.space import Space
+from gsp.exploration.task import Task
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.proof.boxes import search_box
@@ -91,10 +93,10 @@ class Evaluator:
                 designs.append(made.replace(name=f"{made.name or 'design'} {first + i}"))
                 places.append(i)
         if designs:
-            for i, row, design in zip(places, self._assessed(designs), designs, strict=True):
+            for i, row in zip(places, self._assessed(designs), strict=True):
                 rows[i] |= row
-                if self.goals.certify:
-                    rows[i][CERTIFIED] = self._certified(rows[i], design)
+            if self.goals.certify:
+                self._certify(rows, dict(zip(places, designs, strict=True)))
         return rows
 
     def _assessed(self, designs: Sequence[Design]) -> list[dict[str, Any]]:
@@ -103,17 +105,41 @@ class Evaluator:
         request, asked = requested(chosen, task, self.run, False)
         return assessed(request, task, asked, self.proofs, None)[1]
 
-    def _certified(self, row: Mapping[str, Any], design: Design) -> bool:
-        """Return whether a design is proven; those that violate a bound already are not tried."""
-        if self.goals.shortfall(row) > 0.0:
-            return False
-        task = self.goals.task
-        box: Any = task.poses
-        given: dict[str, Any] = {"budget": self.proofs.budget, "workers": self.run.workers}
-        found, interrupted = search_box(design, box, task.limits, **given)
-        if interrupted:  # no verdict on the design, which would otherwise be stored as one
-            raise KeyboardInterrupt
-        return found.status == "proven"
+    def _certify(self, rows: Sequence[dict[str, Any]], designs: Mapping[int, Design]) -> None:
+        """State in rows which designs are proven; those that violate a bound are not tried."""
+        task, executor = self.goals.task, self.run.executor
+        at_once, threads = shared(self.run.workers, executor)
+        asked = [
+            _Proof(i, design, task, self.proofs.budget, threads)
+            for i, design in designs.items()
+            if self.goals.shortfall(rows[i]) == 0.0
+        ]
+        for i in designs:
+            rows[i][CERTIFIED] = False
+        for one, found in run_all(
+            _proved, iter(asked), len(asked), workers=at_once, executor=executor
+        ):
+            rows[one.number][CERTIFIED] = found
+
+
+class _Proof(NamedTuple):
+    """What is proven of a design, with its number."""
+
+    number: int
+    design: Design
+    task: Task
+    budget: int
+    threads: int | None
+
+
+def _proved(asked: _Proof) -> bool:
+    """Return whether every pose of the box of a task is proven regular and within the limits."""
+    box: Any = asked.task.poses
+    given: dict[str, Any] = {"budget": asked.budget, "workers": asked.threads}
+    found, interrupted = search_box(asked.design, box, asked.task.limits, **given)
+    if interrupted:  # no verdict on the design, which would otherwise be stored as one
+        raise KeyboardInterrupt
+    return bool(found.status == "proven")
 
 
 def parameters_at(space: Space, point: Array) -> dict[str, Any]:
