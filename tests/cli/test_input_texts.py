@@ -160,7 +160,7 @@ def test_names_and_paths_that_are_not_known_follow_their_option(gsp):
         (("catalogue", "--class", " "), "--class: unknown class ' '"),
         (("planar", PLANAR, *REACH, "--position", "9", "9"), "--position: expected a radiating"),
         (("planar", PLANAR, *REACH, "--guess", "1e99", "9"), "--guess: expected a point near"),
-        (("planar", PLANAR, *REACH, "--angle", "170"), "--angle: expected one that is feasible"),
+        (("planar", PLANAR, *REACH, "--angle", "170"), "--angle: expected an angle at which"),
         (("workspace", SIX, "--position", "50", "50", "50"), "--position: expected a radiating"),
         (("rank", NAME, "--indices=CTN,ctm"), "--indices: unknown index 'ctm'"),
         (("rank", NAME, "--template", "no.toml"), "--template: "),

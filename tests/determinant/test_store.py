@@ -516,6 +516,7 @@ def test_a_quality_index_above_1_mends_the_store(any_store):
         agreed=1,
         n_local_maxima=1,
         converged=False,
+        evaluations=1,
     )
     store = Store(any_store)
     assert store.put(entry_of(low, form))
@@ -550,7 +551,8 @@ def test_tables_mend_a_low_maximum_too(sqlite_store, tmp_path, way):
     best, form = maximum(design, store=False), canonical(design)
     near = gsp.Pose(best.pose.position + [0.05, 0.0, 0.02], best.pose.rotation)
     low = float(gsp.indices.manipulability(form.design.at(form.inward(near))))
-    stored = Maximum(low, form.inward(near), starts=1, agreed=1, n_local_maxima=1, converged=False)
+    counts = {"starts": 1, "agreed": 1, "n_local_maxima": 1, "evaluations": 1}
+    stored = Maximum(low, form.inward(near), converged=False, **counts)
     assert open_store().put(entry_of(stored, form))
     path = gsp.sweeps.translation(best.pose, "x", [0.0, 0.05])
     with pytest.warns(MaximumWarning, match="was too low"):
