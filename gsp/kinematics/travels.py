@@ -115,10 +115,12 @@ def travel(
     path = TravelPath.of(small, start, twist)
     rate = path.rate
     most = path.default if farthest is None else check_positive("farthest", farthest) * rate
+    searched = most / rate if farthest is None else float(farthest)
     done, number = _March(small, path, bounds / small.units[:, None]).go(most)
-    end = start.moved(twist * (done / rate))
+    distance = searched if done == most else done / rate
     limit = _name(design, number, bounds)
-    return Travel(distance=done / rate, limit=limit, pose=end, farthest=most / rate)
+    end = start.moved(twist * distance)
+    return Travel(distance=distance, limit=limit, pose=end, farthest=searched)
 
 
 def _name(design: Design, number: int, bounds: Array) -> str:

@@ -58,7 +58,8 @@ def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
         raise InvalidInput(expected("guess", "a single point", f"shape {start.shape}"))
     middle = 0.5 * (bounds.low + bounds.high)
     if not np.isfinite(middle).all():
-        raise MissingParameter(expected("strokes", "both limits of each", "an open one"))
+        names = ", ".join(np.array(design.joint_names)[~np.isfinite(middle)])
+        raise MissingParameter(expected("strokes", "both limits of each", f"open ones of {names}"))
     angles = np.linspace(-np.pi, np.pi, 24, endpoint=False)
     poses, ok = _assemble(bounds, middle, np.broadcast_to(start, (24, 2)), angles)
     if not ok.any():

@@ -31,6 +31,8 @@ AXES_LENGTH, SAME_POINT = 0.2, 0.01
 # Distance, in sizes of the mechanism, beyond which a frame is not drawn, as the mechanism would be
 # too small.
 FAR_FRAME_SIZES = 3.0
+# Order of the numbers of legs: above bodies and joints, which matplotlib counts from 4 on.
+NUMBERS_ABOVE = 1000
 # Places of the number of a leg, as shares from base to platform, the preferred first.
 NUMBER_PLACES = (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
 
@@ -209,7 +211,7 @@ def _numbers(posture: Posture, size: float) -> list[SpaceNote]:
 
 def _framed(colour: str) -> dict[str, Any]:
     edge = {"facecolor": "white", "linewidth": 0.7, "edgecolor": colour}
-    return {"fontsize": 6.5, "zorder": 10, "bbox": {"boxstyle": "round,pad=0.2", **edge}}
+    return {"fontsize": 6.5, "zorder": NUMBERS_ABOVE, "bbox": {"boxstyle": "round,pad=0.2", **edge}}
 
 
 def _dress(ax: Axes3D, posture: Posture, points: Array, size: float, far: Sequence[str]) -> None:

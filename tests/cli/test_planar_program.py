@@ -127,6 +127,22 @@ def test_rays_start_in_the_largest_component_where_no_middle_pose_is_known(gsp, 
     )
 
 
+def test_without_middle_lengths_rays_start_in_the_largest_component(gsp, tmp_path):
+    """Two legs have no greatest length: the disc of the first without two discs of radius 1/2."""
+    strokes, anchors = [[0, 1], [0.5, np.nan], [0.5, np.nan]], [[0, 0], [1, 0], [-1, 0]]
+    design = PlanarDesign(["D1"] * 3, anchors, np.zeros((3, 2)), strokes=strokes, name="open")
+    design.write(tmp_path / "open.toml")
+    assert "received open ones of d2, d3; --position states" in gsp("planar", "open.toml").error
+    result = gsp("planar", "open.toml", "--angle", 0, "--rays", 4)
+    assert result.out.endswith(
+        "1 component, area 2.440059; the radiating point is in component 0\n"
+    )
+    # The lens of circles of radii 1 and r at the distance 1.
+    r = 0.5
+    lens = r**2 * np.arccos(r / 2) + np.arccos(1 - r**2 / 2) - 0.5 * r * np.sqrt((2 - r) * (2 + r))
+    assert np.pi - 2 * lens == pytest.approx(2.440059, abs=1e-6)
+
+
 def test_an_angle_without_a_workspace_is_named(gsp):
     """Half a turn crosses the legs of this platform, which has equal triangles."""
     error = gsp("planar", "lee-2000-planar", "--stroke", 0.3, 0.4, "--angle", 180).error

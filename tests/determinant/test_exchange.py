@@ -110,7 +110,7 @@ def test_bad_files(filled, tmp_path):
         ("a.json", '{"maxima": ' + "9" * 5000 + "}", "an integer is too long"),
         ("a.json", '{"maxima": [{}]}', "maximum 1: entry: expected a key, received none"),
         ("a.json", '{"maxima": [{"key": "", "version": "x"}]}', "version: expected a number"),
-        ("a.csv", f"key,version,design\n1,{METHOD},x\n", "maximum 1: entry: expected numbers"),
+        ("a.csv", f"key,version,design\n1,{METHOD},x\n", "maximum 1: design: expected JSON"),
         (
             "a.csv",
             f'key,version,design\n1,{METHOD},"[1]"\n',

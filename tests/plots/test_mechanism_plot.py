@@ -182,6 +182,15 @@ def bodies_pass_through_their_joints(ax, design):
         assert gaps.max() < 1e-9 * size
 
 
+def test_numbers_of_legs_are_in_front_of_bodies_and_joints():
+    ax = mechanism(AWKWARD["eight legs"])
+    ax.figure.canvas.draw()  # orders of what is in space are set while it is drawn
+    numbers = [text for text in ax.texts if text.get_bbox_patch() is not None]
+    assert len(numbers) == 8
+    behind = max(artist.get_zorder() for artist in (*ax.collections, *ax.patches, *ax.lines))
+    assert min(text.get_zorder() for text in numbers) > behind
+
+
 def test_the_operation_ellipsoid_is_drawn_where_the_design_has_one():
     drawn = design("nawratil-isotropic-3-mu-0")
     turned = gsp.Pose.from_rpy([1.0, 2.0, 3.0], [0.3, 0.4, 0.5])

@@ -16,7 +16,7 @@ from gsp.cli.inputs.workspaces import check_stroke
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.planar import Results, report_planar
-from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.files.tables import check_table
 from gsp.planar import PlanarComponent, PlanarDesign
 
@@ -155,7 +155,9 @@ def _radiating(
     pose, failure = None, None
     try:
         pose = radiating_point(design, home if guess is None else guess)
-    except EmptyWorkspace as error:
+    except (EmptyWorkspace, MissingParameter) as error:
+        if design.strokes is None:
+            raise
         failure = error
     if angle is not None and guess is None:
         parts = _components(design, angle)

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gsp import arguments
+from gsp.checks import check_array
 from gsp.determinant.canonical import design_of, key_of, region_of
 from gsp.determinant.record import METHOD
 from gsp.determinant.store.database import Store
@@ -51,7 +52,7 @@ def checked_entry(row: Mapping[str, Any]) -> dict[str, Any]:
         raise InvalidInput(expected("entry", f"a column {error}", "none")) from error
     except GspError:
         raise
-    except (ValueError, TypeError, OverflowError, AttributeError, RecursionError) as error:
+    except (ValueError, TypeError, OverflowError, AttributeError, IndexError) as error:
         wanted = "numbers and JSON in its columns"
         raise InvalidInput(expected("entry", wanted, "others")) from error
 
@@ -113,9 +114,16 @@ def structured(row: Mapping[Any, Any]) -> dict[str, Any]:
     """Return a row with structures for JSON texts, and None for what is missing."""
     values = {str(k): None if isinstance(v, float) and math.isnan(v) else v for k, v in row.items()}
     return {
-        k: json.loads(v) if k in STRUCTURES and isinstance(v, str) and v else v
+        k: _read(k, v) if k in STRUCTURES and isinstance(v, str) and v else v
         for k, v in values.items()
     }
+
+
+def _read(name: str, text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(expected(name, "JSON", brief(text))) from error
 
 
 def _checked(row: dict[str, Any]) -> dict[str, Any]:
@@ -124,10 +132,11 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
     if not isinstance(legs, list) or not isinstance(rows, list):
         wanted = 'an object with the lists "legs" and "rows"'
         raise InvalidInput(expected("design", wanted, brief(design)))
-    key = key_of(legs, rows, row.get("domain"))
+    domain = _domain(row.get("domain"))
+    key = key_of(legs, rows, domain)
     if key != row["key"]:
         raise InvalidInput(expected("key", f"{key}, which its design has", brief(row["key"])))
-    maximum = maximum_of(row, design_of(legs, rows), region_of(row.get("domain")))
+    maximum = maximum_of(row, design_of(legs, rows), region_of(domain))
     kept = {name: row.get(name) for name in FIELDS}
     if not isinstance(kept["library"], str | None):
         raise InvalidInput(expected("library", "a text", brief(kept["library"])))
@@ -137,6 +146,19 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
     moment = _moment(kept["found"])
     value = maximum.value
     return {**kept, **texts, **whole, "value": value, "version": version, "found": moment}
+
+
+def _domain(value: Any) -> list[Any] | None:
+    """Return the domain of an entry in the form of `Canonical.domain`."""
+    match value:
+        case None:
+            return None
+        case ["box", corners, str(order)]:
+            return ["box", check_array("domain", corners, (2, 6)).tolist(), order]
+        case ["near home", displacement, angle]:
+            return ["near home", *check_array("domain", [displacement, angle], (2,)).tolist()]
+    wanted = 'null, ["box", [low, high], order] or ["near home", displacement, angle]'
+    raise InvalidInput(expected("domain", wanted, brief(value)))
 
 
 def _moment(value: Any) -> float | None:
