@@ -53,7 +53,7 @@ class Block(NamedTuple):
         Indices.
     singular : bool
         Whether singular poses are marked.
-    checks : tuple of functions (design, pose) -> (n,) bool array
+    checks : tuple of functions (design, pose) -> (n,) or (k, n) bool array
         Other conditions that are evaluated at each pose, such as whether it is within the strokes.
     """
 
@@ -75,7 +75,8 @@ class Values(NamedTuple):
         Values of the indices.
     singular : (n,) bool array
         Empty if it was not requested.
-    checked : (n_checks, n) bool array
+    checked : (k, n) bool array or None
+        The conditions of all checks, one after the other.
     """
 
     columns: Array
@@ -261,6 +262,4 @@ def run_block(block: Block) -> Values:
     values = BACKENDS[block.backend](block)
     if not block.checks:
         return values
-    # Two columns may ask for the same.
-    found = {check: check(block.design, block.pose) for check in dict.fromkeys(block.checks)}
-    return values._replace(checked=np.stack([found[check] for check in block.checks]))
+    return values._replace(checked=np.vstack([c(block.design, block.pose) for c in block.checks]))

@@ -100,7 +100,8 @@ def by_design(
     for job, number, values in evaluated(request, report, lambda job, number: job in known):
         if job not in started:
             columns = np.empty((len(request.names), size))
-            flags = np.empty((1 + len(request.checks), size), dtype=bool)
+            conditions = 0 if values.checked is None else len(values.checked)
+            flags = np.empty((1 + conditions, size), dtype=bool)
             started[job] = DesignValues(job, columns, flags[0], flags[1:])
             left[job] = len(cut)
         started[job].columns[:, cut[number]] = values.columns

@@ -51,7 +51,7 @@ class Request:
         Numbers of the jobs whose maximum of |det J| has to be searched first.
     singular : bool
         Whether singular poses are marked.
-    checks : tuple of functions (design, pose) -> (n,) bool array
+    checks : tuple of functions (design, pose) -> (n,) or (k, n) bool array
         Other conditions that are evaluated at each pose.
     backend, workers, executor, out, resume, progress : see `evaluate`
     """

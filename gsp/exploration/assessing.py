@@ -203,6 +203,7 @@ def requested(
         list(task.indices or NO_INDEX),
         None,
         limits=task.limits,
+        by_kind=True,
         length=task.length,
         ellipsoid=task.ellipsoid,
         maximum=None,

@@ -1,4 +1,4 @@
-"""What a task demands besides indices: limits, by their kinds, and the forces of its loads."""
+"""What a task demands besides indices and limits: the forces of its loads."""
 
 from __future__ import annotations
 
@@ -8,21 +8,22 @@ import numpy as np
 
 from gsp.exploration.task import Task
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
-from gsp.limits import feasible
+from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
 from gsp.statics import gravity_wrench
 
-# Columns: the greatest actuator force and torque, and the beginning of those of violations.
-FORCE, TORQUE, VIOLATED = "actuator_force", "actuator_torque", "violated_"
+# Columns: the greatest actuator force and torque.
+FORCE, TORQUE = "actuator_force", "actuator_torque"
 
 
-def demands(design: Design, pose: Pose, task: Task) -> dict[str, Any]:
-    """Return the columns of a design that are no statistics of an index.
+def demands(design: Design, feasible: Mask | None, pose: Pose, task: Task) -> dict[str, Any]:
+    """Return the columns of the loads of a task for a design.
 
     Parameters
     ----------
     design : Design
+    feasible : (n,) bool array or None
+        Which poses are within the limits of the task; None if it has none.
     pose : Pose of batch shape (n,)
         All poses of the task.
     task : Task
@@ -30,17 +31,12 @@ def demands(design: Design, pose: Pose, task: Task) -> dict[str, Any]:
     Returns
     -------
     dict
-        "violated_joint", …: the share of the poses that violate a limit of the kind, if the task
-        has limits; "actuator_force" and "actuator_torque": the greatest magnitudes at the poses
-        within the limits, if it has loads.
+        "actuator_force" and "actuator_torque": the greatest magnitudes at the poses within the
+        limits, if the task has loads.
     """
     row: dict[str, Any] = {}
-    if task.limits is not None:
-        found = feasible(design, pose, task.limits)
-        row |= {f"{VIOLATED}{kind}": share for kind, share in found.shares.items()}
-        pose = pose[found.ok]
     if is_loaded(task):
-        forces = greatest_forces(design, pose, task)
+        forces = greatest_forces(design, pose if feasible is None else pose[feasible], task)
         for column, chosen in ((FORCE, ~design.angular), (TORQUE, design.angular)):
             if chosen.any():
                 row[column] = _largest(forces[:, chosen])

@@ -23,6 +23,7 @@ from gsp.evaluation.request import (
 from gsp.evaluation.settings import Maximum, Settings, divide_by_largest, provenance
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Mask
 from gsp.indices import index_name
 from gsp.limits import Limits
 from gsp.model.design import Design
@@ -181,20 +182,22 @@ def prepared(
     by: str | None,
     *,
     limits: Limits | None = None,
+    by_kind: bool = False,
     backend: str = "compiled",
     workers: int | None = None,
     **how: Any,
 ) -> tuple[Request, str, tuple[str, ...]]:
     """Return the checked request of a ranking, the index that decides, and the columns of shares.
 
-    The designs of the request have distinct names. Nothing is computed yet.
+    The designs of the request have distinct names. Nothing is computed yet. `by_kind`: see
+    `restrictions`.
 
     Raises
     ------
     As `rank`, but for its files.
     """
     check_units(designs)
-    asked = restrictions(designs, limits)
+    asked = restrictions(designs, limits, by_kind=by_kind)
 
     def asking(indices: Iterable[str] | str | None) -> Request:
         return make_request(
@@ -204,7 +207,7 @@ def prepared(
             backend=backend,
             workers=workers,
             singular=True,
-            checks=tuple(asked.values()),
+            checks=asked.checks,
             **{"executor": None, **how},
         )
 
@@ -217,7 +220,7 @@ def prepared(
         job if job.design.name == name else job._replace(design=job.design.replace(name=name))
         for job, name in zip(request.jobs, distinct_names(designs), strict=True)
     ]
-    return replace(request, jobs=jobs), decides, tuple(asked)
+    return replace(request, jobs=jobs), decides, asked.columns
 
 
 def checked_designs(designs: Any) -> Sequence[Design]:
@@ -263,18 +266,22 @@ def rows_of_designs(
     asked: tuple[str, ...],
     parts: Parts | None,
     report: Report,
-    beside: Callable[[Design], dict[str, Any]] | None = None,
+    beside: Callable[[Design, Mask | None], dict[str, Any]] | None = None,
 ) -> tuple[Request, list[dict[str, Any]]]:
     """Row of each design; stored ones are read, and new ones stored.
 
-    `beside` gives more columns. The returned request has better maxima where λ is above 1.
+    `beside` gives more columns from a design and the mask of its feasible poses, None without
+    limits. The returned request has better maxima where λ is above 1.
     """
     jobs, numbers = list(request.jobs), range(len(request.jobs))
     rows = {job: parts.read_row(job) for job in numbers if parts and parts.has(job)}
     for values in by_design(request, report, frozenset(rows)):
         jobs[values.job] = mended(jobs[values.job], request.pose, request.names, values.columns)
         row = row_of_design(request, asked, values)
-        rows[values.job] = row | (beside(jobs[values.job].design) if beside else {})
+        if beside:
+            used = dict(zip(asked, values.checked, strict=True)).get(FEASIBLE)
+            row |= beside(jobs[values.job].design, used)
+        rows[values.job] = row
         if parts:
             parts.write_row(values.job, rows[values.job])
     return replace(request, jobs=jobs), [rows[job] for job in numbers]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,26 @@ from gsp.limits import Limits, feasible
 from gsp.limits.bounds import bounded_quantities
 from gsp.model.design import Design
 
-# Columns of a ranking: shares of the poses.
-WITHIN_STROKES, FEASIBLE = "within_strokes", "feasible"
+# Columns of a ranking: shares of the poses; and the beginning of the names of those by kinds.
+WITHIN_STROKES, FEASIBLE, VIOLATED = "within_strokes", "feasible", "violated_"
+
+
+class Restrictions(NamedTuple):
+    """Conditions at each pose.
+
+    Attributes
+    ----------
+    columns : tuple of str
+        Their names.
+    checks : tuple of functions (design, pose) -> (n,) or (k, n) bool array
+        One after the other they give the columns. Each evaluates the design at the poses once.
+    """
+
+    columns: tuple[str, ...]
+    checks: tuple[Check, ...]
+
+
+NONE = Restrictions((), ())
 
 
 def within_strokes(design: Design, pose: Pose) -> Mask:
@@ -30,33 +48,52 @@ def within_strokes(design: Design, pose: Pose) -> Mask:
     return feasible(design, pose).ok
 
 
-def _satisfied(design: Design, pose: Pose, limits: Limits) -> Mask:
-    return feasible(design, pose, limits).ok
+def _judged(design: Design, pose: Pose, limits: Limits, columns: Sequence[str]) -> Mask:
+    """Return columns of `restrictions`, shape (k, n); the strokes are those of the limits."""
+    found = feasible(design, pose, limits)
+    violated, kinds = np.asarray(found.violated.any(axis=-1)), np.array(found.kinds)
+    ok = ~violated.any(axis=-1)
+    rows = []
+    for column in columns:
+        kind = "joint" if column == WITHIN_STROKES else column.removeprefix(VIOLATED)
+        wrong = ~ok if column == FEASIBLE else violated[:, kinds == kind].any(axis=-1)
+        rows.append(wrong if column.startswith(VIOLATED) else ~wrong)
+    return np.stack(rows)
 
 
-def restrictions(designs: Sequence[Design], limits: Limits | None) -> dict[str, Check]:
-    """Return the conditions that are evaluated at each pose, by the name of the column.
+def restrictions(
+    designs: Sequence[Design], limits: Limits | None, *, by_kind: bool = False
+) -> Restrictions:
+    """Return the conditions that are evaluated at each pose.
 
     Parameters
     ----------
     designs : sequence of Design
     limits : Limits or None
+    by_kind : bool
+        Whether there is a column for each kind of limits as well: where one is violated.
 
     Raises
     ------
     InvalidInput, MissingParameter
         If the limits do not fit a design.
     """
-    asked: dict[str, Check] = {}
-    if any(design.strokes is not None for design in designs):
-        asked[WITHIN_STROKES] = within_strokes
-    if limits is not None:
-        check_type("limits", limits, Limits)
-        for design in designs:
-            bounded_quantities(design, limits, crossed=True)
-        strokes_alone = limits_record(limits) == limits_record(Limits())
-        asked[FEASIBLE] = within_strokes if strokes_alone else partial(_satisfied, limits=limits)
-    return asked
+    strokes = any(design.strokes is not None for design in designs)
+    if limits is None:
+        return Restrictions((WITHIN_STROKES,), (within_strokes,)) if strokes else NONE
+    check_type("limits", limits, Limits)
+    kinds: dict[str, None] = {}
+    for design in designs:
+        named = bounded_quantities(design, limits, crossed=True).named
+        kinds |= dict.fromkeys(quantity.kind for quantity in named)
+    first = (WITHIN_STROKES,) if strokes else ()
+    rest = (FEASIBLE, *(VIOLATED + kind for kind in kinds if by_kind))
+    # Without other strokes, the joints of the limits are within those of the design.
+    if limits.strokes is None:
+        columns = (*first, *rest)
+        return Restrictions(columns, (partial(_judged, limits=limits, columns=columns),))
+    judged = partial(_judged, limits=limits, columns=rest)
+    return Restrictions((*first, *rest), (within_strokes, judged) if strokes else (judged,))
 
 
 def limits_record(limits: Limits | None) -> dict[str, Any] | None:

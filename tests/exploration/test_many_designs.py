@@ -1,6 +1,7 @@
 """Many designs at few poses, several at a time: the bits of each alone."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -9,9 +10,11 @@ import pytest
 import gsp
 from gsp.evaluation import request as requests
 from gsp.evaluation.parts import Parts
-from gsp.exploration import assessing, explore
+from gsp.exploration import assess, assessing, explore
 from gsp.exploration.exploring import designs_of
+from gsp.limits import feasible
 from gsp.model.design.anchored import PARAMETERS
+from gsp.ranking import restrictions
 
 TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 
@@ -101,6 +104,47 @@ def test_an_interrupted_exploration_resumes_with_other_blocks(tmp_path, monkeypa
     assert len(stored) == 3
     monkeypatch.setattr(requests, "POSES_PER_BLOCK", 16)
     same(explore(SPACE, TASK, 7, seed=3, out=out, resume=True, workers=2), whole)
+
+
+def test_limits_are_evaluated_once_for_each_design(monkeypatch):
+    """For the shares of all kinds and for the forces, also where some designs have no strokes."""
+    evaluated = []
+
+    def counted(design, pose, limits=None):
+        evaluated.append(design.name)
+        return feasible(design, pose, limits)
+
+    monkeypatch.setattr(restrictions, "feasible", counted)
+    one = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, strokes=[1.6, 2.4])
+    designs = [one, one.replace(name="free", strokes=None)]
+    limits = gsp.Limits(platform_cone=0.3, position=[[-0.1, 0.2], [-1, 1], [0, 9]])
+    task = gsp.Task(
+        poses=gsp.PoseBox([(-0.3, 0.3), (-0.3, 0.3), (1.3, 1.7)], [(-0.3, 0.3)] * 3),
+        wanted="mean CTN", samples=60, limits=limits, payload=gsp.statics.Masses(platform=5.0),
+    )  # fmt: skip
+    table = assess(designs, task, workers=1).set_index("design")
+    assert sorted(evaluated) == sorted(design.name for design in designs)
+    for design in designs:
+        found, row = feasible(design, task.pose(), limits), table.loc[design.name]
+        assert 0.0 < row["feasible"] == found.ok.mean() < 1.0
+        for kind in ("joint", "position", "cone"):
+            values = found.values[:, [k == kind for k in found.kinds]]
+            low, high = (end[[k == kind for k in found.kinds]] for end in (found.low, found.high))
+            wrong = ((values < low) | (values > high)).any(axis=1)
+            assert row[f"violated_{kind}"] == wrong.mean()
+        forces = design.at(task.pose()[found.ok]).actuator_forces([0, 0, 5.0 * 9.81, 0, 0, 0])
+        np.testing.assert_allclose(row["actuator_force"], np.abs(forces).max(), rtol=1e-12)
+    assert table.loc[one.name, "within_strokes"] == gsp.feasible(one, task.pose()).ok.mean()
+    assert np.isnan(table.loc["free", "within_strokes"])
+    assert table.loc["free", "violated_joint"] == 0.0
+    # Other strokes than those of the design are another question.
+    evaluated.clear()
+    other = replace(task, limits=gsp.Limits(strokes=[[1.65, 2.3]] * 6))
+    row = assess(one, other, workers=1).iloc[0]
+    assert len(evaluated) == 2
+    ends = feasible(one, task.pose()), feasible(one, task.pose(), other.limits)
+    assert [row["within_strokes"], row["feasible"]] == [found.ok.mean() for found in ends]
+    assert row["feasible"] < row["within_strokes"]
 
 
 def test_designs_are_made_once_each():

@@ -14,11 +14,12 @@ from gsp.cli.ranking.candidates import Candidates
 from gsp.cli.ranking.files import KEYS, outputs, save, stopped
 from gsp.cli.ranking.report import BEST, designs_text, facts_of
 from gsp.exploration import Task, assess
-from gsp.exploration.demands import FORCE, TORQUE, VIOLATED, is_loaded
+from gsp.exploration.demands import FORCE, TORQUE, is_loaded
 from gsp.exploration.proving import CLOSED, FOUND, PROVEN, proven
 from gsp.exploration.task import HIGH, LOW, RESOLUTION
 from gsp.exploration.volumes import volumes
 from gsp.limits.kinds import Kind
+from gsp.ranking.restrictions import VIOLATED
 
 if TYPE_CHECKING:
     import pandas as pd
