@@ -244,6 +244,30 @@ NOTES = """['td:nth-child(5)', '.gsp-under'].map(
   (part) => [...document.querySelectorAll(`.gsp-ranking ${part}`)].some((e) => e.offsetWidth))"""
 
 
+# Fields beside sliders that cut a long number: a part of it looks like another one.
+CUT = """[...document.querySelectorAll('.gsp-control input')].map((field) => {
+  const shown = field.value;
+  field.value = '-2.88888e-100';
+  const cut = field.scrollWidth > field.clientWidth;
+  field.value = shown;
+  return cut;
+})"""
+
+
+@pytest.mark.parametrize("width", [1366, 390, 320])
+def test_fields_beside_sliders_hold_all_digits_and_the_exponent(visit, width):
+    async def work(tab):
+        await tab.resize(width, 844)
+        for name in ("Motion", "Legs"):
+            await tab.click("tab", name)
+            await tab.until(f"{CUT}.length === 6")
+            await tab.still()
+            assert await tab.run(CUT) == [False] * 6
+        assert await tab.run("document.documentElement.scrollWidth") == width
+
+    visit(work)
+
+
 def test_numbers_are_not_broken_and_notes_have_a_place_at_the_width_of_a_phone(visit):
     async def work(tab):
         await tab.click("tab", "Catalogue")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import gsp
 from gsp.app.page.panels import contours
+from gsp.app.page.panels.plots import curve_options, map_options, plot_names
 from gsp.app.state import choices, curves, motion
+from gsp.app.state import session as sessions
 from gsp.app.state.session import started
 from gsp.errors import GspError
 
@@ -54,6 +58,34 @@ def test_the_ranking_is_that_of_the_library(toz):
         design = gsp.catalogue.instantiate(gsp.catalogue.mechanism(one.name), toz.design)
         wanted = gsp.indices.control_number(design.at(state.pose), toz.length)
         assert one.value == pytest.approx(float(wanted), rel=1e-12)
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.0])
+def test_plots_without_a_value_state_why_as_figures_of_sweeps_do(radius):
+    """Two similar hexagons are singular at every pose, and so is a platform of one point."""
+    angle = np.arange(6) * np.pi / 3.0
+    ring = np.stack((np.cos(angle), np.sin(angle), 0.0 * angle), axis=1)
+    home = gsp.Pose([0.0, 0.0, 1.5])
+    design = gsp.Design(["D1"] * 6, 2.0 * ring, radius * ring, home=home)
+    state = sessions.with_length(started(design), 1.0)
+    along = curves.curve(state, "condition_number", "z")
+    over = curves.map_over(state, "condition_number", "xy")
+    path = gsp.sweeps.translation(home, "z", along.places - 1.5)
+    figure = gsp.plots.sweep(gsp.sweep(design, path, "condition_number", length=1.0))
+    (written,) = figure.axes[0].texts
+    for options in (curve_options(along), map_options(over)):
+        words = options["title"]["text"]
+        assert words == "CDN_CL is infinite at every pose"
+        assert written.get_text().endswith(words.removeprefix("CDN_CL"))
+    assert not map_options(over)["visualMap"]["show"]  # colours of no value
+    some = replace(along, values=np.where(along.places < 1.5, 2.0, np.nan))
+    assert "title" not in curve_options(some)
+
+
+def test_plots_are_named_by_index_and_axes():
+    names = plot_names("condition_number", "z", "xz")
+    assert names == ("CDN_CL along z", "CDN_CL over x and z")
+    assert plot_names("control_number", "turn about x", "yz")[0] == "CTN by a turn about x"
 
 
 def test_wrong_words_are_errors(toz):

@@ -455,8 +455,12 @@ def test_indices_and_plots():
             ends = grid[i : i + 2, j : j + 2][: 1 + (a > 0), : 1 + (b > 0)]
             assert ends.min() - 1e-3 <= text <= ends.max() + 1e-3
             assert any(one["value"] in line["coords"] for line in lines["data"])
+        assert line.props["aria-label"] == "CTN along z"
+        assert field.props["aria-label"] == "CTN over x and y"
         page.choose("Index to plot", "quality_index")
         assert "quality_index: expected maximum=" in page.html
+        assert line.props["aria-label"] == "λ along z: no plot"
+        assert line.options == field.options == {"series": []}  # none of the index before
         page.choose("Index to plot", "condition_number_ellipsoid")
         assert "condition_number_ellipsoid: expected ellipsoid=" in page.html
 

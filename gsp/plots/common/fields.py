@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from gsp.figures import INK
+from gsp.figures.gaps import undrawable_words
 from gsp.geometry.vectors import Array, Mask
 from gsp.plots.common.scales import Scale, levels_of, number_format
 from gsp.plots.common.style import GREY
@@ -169,16 +170,9 @@ def write_constant(ax: Axes, values: Array) -> None:
 
 def write_undrawable(ax: Axes, symbol: str, values: Array) -> None:
     """Write into empty axes why there is nothing to draw, such as "CTN is 0 at every pose"."""
-    text = f"{symbol} is {_state(values)} at every pose"
+    text = undrawable_words(symbol, values)
     ax.text(0.5, 0.5, text, ha="center", va="center", color=GREY, transform=ax.transAxes)
     ax.set_yticks([])
-
-
-def _state(values: Array) -> str:
-    known = values[~np.isnan(values)]
-    if not known.size:
-        return "undefined"
-    return "infinite" if np.isinf(known).all() else "0" if (known == 0.0).all() else "0 or infinite"
 
 
 def _corners(values: Any) -> Mask:

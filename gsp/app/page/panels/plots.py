@@ -12,6 +12,7 @@ from gsp.app.page.client import Client
 from gsp.app.page.panels.contours import contour, label_place, round_levels
 from gsp.app.state import curves
 from gsp.errors import GspError
+from gsp.figures.gaps import gap_words
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 
@@ -28,29 +29,47 @@ def plots_panel(client: Client) -> None:
         for part in (index, motion, plane):
             part.props("dense outlined")
     note = ui.label().classes("gsp-note").props("role=status")
-    line = ui.echart(_no_plot()).classes("gsp-plot").props('role=img aria-label="index along"')
-    field = ui.echart(_no_plot()).classes("gsp-plot").props('role=img aria-label="index over"')
+    line, field = (ui.echart(_no_plot()).classes("gsp-plot").props("role=img") for _ in range(2))
 
     def draw() -> None:
+        names = plot_names(index.value, motion.value, plane.value)
         try:
             curve = curves.curve(client.state, index.value, motion.value)
             plot = curves.map_over(client.state, index.value, plane.value)
         except GspError as error:
             note.text = str(error)
+            for chart, name in zip((line, field), names, strict=True):
+                _set(chart, _no_plot(), f"{name}: no plot")
             return
-        note.text = "Orange: the present pose. The map has the present rotation."
-        _set(line, curve_options(curve))
-        _set(field, map_options(plot))
+        gaps = [gap_words(one.index.symbol, one.values) for one in (curve, plot)]
+        note.text = " ".join([
+            "Orange: the present pose. The map has the present rotation.",
+            *(f"{name}: {gap}." for name, gap in zip(("Curve", "Map"), gaps, strict=True) if gap),
+        ])  # fmt: skip
+        options = curve_options(curve), map_options(plot)
+        for chart, name, option, gap in zip((line, field), names, options, gaps, strict=True):
+            _set(chart, option, f"{name}: {gap}" if gap else name)
 
     for part in (index, motion, plane):
         part.on_value_change(draw)
     client.on_move(draw, "plots")
 
 
+def plot_names(index: str, motion: str, plane: str) -> tuple[str, str]:
+    """Return the names of the two plots for screen readers.
+
+    >>> plot_names("control_number", "turn about x", "xz")
+    ('CTN by a turn about x', 'CTN over x and z')
+    """
+    way = f"by a {motion}" if motion.startswith("turn") else f"along {motion}"
+    return f"{SYMBOLS[index]} {way}", f"{SYMBOLS[index]} over {plane[0]} and {plane[1]}"
+
+
 def curve_options(curve: curves.Curve) -> dict[str, Any]:
     """Return the plot of an index along a motion, with a line at the present pose."""
     points = [[float(x), y] for x, y in zip(curve.places, _finite(curve.values), strict=True)]
     return {
+        **_undrawable(curve.index.symbol, curve.values),
         "animation": False,
         "grid": {"left": 64, "right": 24, "top": 32, "bottom": 44},
         "tooltip": {"trigger": "axis"},
@@ -95,12 +114,14 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
         good = good[::-1]
     middle = size // 2
     return {
+        **_undrawable(plot.index.symbol, plot.values),
         "animation": False,
         "grid": {"left": 64, "right": 88, "top": 16, "bottom": 44},
         "tooltip": {},
         "xAxis": [_cells(plot.first), _coordinate(plot.first, plot.axes[0], "bottom", 28)],
         "yAxis": [_cells(plot.second), _coordinate(plot.second, plot.axes[1], "left", 48)],
         "visualMap": {
+            "show": bool(data),
             "seriesIndex": 0,
             "min": low,
             "max": high if high > low else low + 1.0,
@@ -189,6 +210,17 @@ def _coordinate(values: Array, name: str, position: str, gap: int) -> dict[str, 
     }
 
 
+def _undrawable(symbol: str, values: Array) -> dict[str, Any]:
+    """Return the text in the middle of a plot that has no value to draw."""
+    if np.isfinite(values).any():
+        return {}
+    # Beside the present pose, on a ground that hides the line through it.
+    written = {"fontSize": 13, "fontWeight": "normal", "color": INK, "width": 220}
+    title = {"text": gap_words(symbol, values), "left": "center", "top": "25%", "padding": 8}
+    title |= {"textStyle": written | {"overflow": "break"}, "backgroundColor": "#FFFFFFE6"}
+    return {"title": title}
+
+
 def _finite(values: Array) -> list[float | None]:
     return [float(f"{v:.5g}") if np.isfinite(v) else None for v in values]
 
@@ -197,7 +229,9 @@ def _no_plot() -> dict[str, Any]:
     return {"series": []}
 
 
-def _set(chart: ui.echart, options: dict[str, Any]) -> None:
+def _set(chart: ui.echart, options: dict[str, Any], name: str) -> None:
+    """Show a plot, which has a name for screen readers."""
     chart.options.clear()
     chart.options.update(options)
+    chart.props["aria-label"] = name
     chart.update()
