@@ -215,8 +215,8 @@ def _undrawable(symbol: str, values: Array) -> dict[str, Any]:
     if np.isfinite(values).any():
         return {}
     # Beside the present pose, on a ground that hides the line through it.
-    written = {"fontSize": 13, "fontWeight": "normal", "color": INK, "width": 220}
-    title = {"text": gap_words(symbol, values), "left": "center", "top": "25%", "padding": 8}
+    written = {"fontSize": 12, "fontWeight": "normal", "color": INK, "width": 180}
+    title = {"text": gap_words(symbol, values), "left": "center", "top": "25%", "padding": 3}
     title |= {"textStyle": written | {"overflow": "break"}, "backgroundColor": "#FFFFFFE6"}
     return {"title": title}
 
