@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gsp.geometry.vectors import Array
 
-
-def undrawable_words(symbol: str, values: Array) -> str:
+def undrawable_words(symbol: str, values: NDArray[np.float64]) -> str:
     """Return why there is nothing to draw: each value is 0, infinite or undefined.
 
     Parameters
@@ -29,7 +28,7 @@ def undrawable_words(symbol: str, values: Array) -> str:
     return f"{symbol} is {states} at every pose"
 
 
-def gap_words(symbol: str, values: Array) -> str:
+def gap_words(symbol: str, values: NDArray[np.float64]) -> str:
     """Return at how many poses an index is not finite, "" where it is so at none.
 
     Parameters
