@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Axes whose greatest number is in this range have no power of ten.
-PLAIN_NUMBERS = (1e-4, 1e5)
+PLAIN_NUMBERS = (1e-2, 1e5)
 # An axis whose middle is more lengths of the axis away from zero counts from a number near it.
 FAR_LENGTHS = 1e3
 # Significant digits of the numbers on axes.

@@ -7,10 +7,15 @@ from typing import Any
 
 # How many numbers an axis has at least without those beside a corner.
 LEAST_TICKS = 2
+# Numbers of so many letters are clear of the marks of their axis; width of a digit, in heights.
+SHORT_NUMBER, DIGIT_WIDTH = 3, 0.6
 
 
 def set_space_ticks(ax: Any, counts: Sequence[int], steps: Sequence[float] | None = None) -> None:
     """Set the numbers of axes in space, at most so many intervals on each; one in each corner.
+
+    Long numbers and the name of their axis are farther from it, as matplotlib centres numbers.
+    The formatters of the axes have to be set before.
 
     In the view of all figures the greatest x meets the least y, and the greatest y the least z. Of
     two numbers there, that of the axis with more of them is left out.
@@ -40,6 +45,22 @@ def set_space_ticks(ax: Any, counts: Sequence[int], steps: Sequence[float] | Non
         axis, low = ends[k]
         if away[k][0] >= LEAST_TICKS:
             axis.set_major_locator(ClearOfCorner(axis.get_major_locator(), low=low))
+    for axis in axes:
+        _move_away(axis)
+
+
+def _move_away(axis: Any) -> None:
+    """Move numbers of an axis in space by half of what they are too long, and its name by all."""
+    from matplotlib import rcParams
+
+    texts = axis.get_major_formatter().format_ticks(axis.get_majorticklocs())
+    more = max((len(text) - SHORT_NUMBER for text in texts), default=0)
+    if more <= 0:
+        return
+    size = float(axis.get_ticklabels()[0].get_fontsize())
+    step = 0.5 * more * DIGIT_WIDTH * size
+    axis.set_tick_params(pad=rcParams["xtick.major.pad"] + step)
+    axis.labelpad += 2.0 * step
 
 
 def _away(axis: Any, *, low: bool) -> tuple[int, int]:

@@ -175,6 +175,7 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
     scale = scale_of(values, name)
     if scale is None:
         write_undrawable(ax, symbol_text(name), values)
+        ax.set_yticks([])
         return _named(ax, table)
     shown = scale.clipped(values)
     ax.set_yscale("log" if scale.log else "linear")

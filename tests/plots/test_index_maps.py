@@ -94,12 +94,18 @@ def test_feasible_cells_without_a_value_are_hatched_and_infeasible_ones_white(ma
 
 
 @pytest.mark.parametrize(
-    ("number", "text"), [(0.25, "constant: 0.25"), (np.nan, "CTN is undefined at every pose")]
+    ("number", "text"),
+    [
+        (0.25, "constant: 0.25"),
+        (np.nan, "CTN is undefined at every pose"),
+        (np.inf, "CTN is infinite at every pose"),
+    ],
 )
 def test_a_constant_and_an_undefined_index_are_stated(mapped, number, text):
     table = np.where(mapped.feasible, number, np.nan)
     ax = index_map(replace(mapped, values={"control_number": table}))
     assert [note.get_text() for note in ax.texts] == [text]
+    assert len(ax.get_yticks()) > 1
     assert len(ax.figure.axes) == 1
     assert_ink(ax.figure)
 

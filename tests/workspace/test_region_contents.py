@@ -8,6 +8,7 @@ import pytest
 import gsp
 from gsp.errors import InvalidInput, UnknownIndex
 from gsp.proof import extremes
+from tests.support import random_design
 
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
 SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
@@ -102,6 +103,22 @@ def test_a_region_states_that_its_resolution_was_not_reached():
     assert whole.reached
     assert whole.resolution <= 2.0
     assert "reached" not in repr(whole)
+
+
+@pytest.mark.parametrize("seed", [1, 10])
+def test_the_worst_control_number_is_that_near_singular_poses(seed):
+    """Its own bounds leave open where it is least; singular poses are the worst of all indices."""
+    bare = random_design(np.random.default_rng(seed), ["D1"] * 5 + ["A1"])
+    home = gsp.Pose([0.1, 0.0, 1.5])
+    joints = bare.at(home).joints
+    design = bare.replace(home=home, strokes=np.stack((0.9 * joints, 1.1 * joints), axis=-1))
+    region = gsp.workspace.fixed_orientation(design, resolution=0.02)
+    given = {"budget": 4000, "length": 1.0}
+    near = design.at(region.worst("σ_min", **given).pose)
+    found = region.worst("CTN", **given)
+    assert found.value <= gsp.indices.control_number(near, length=1.0) * (1 + 1e-6) < 1e-4
+    own = gsp.indices.control_number(design.at(found.pose), length=1.0)
+    assert found.value == pytest.approx(own, rel=1e-6)
 
 
 def test_worst_value_has_the_same_bits_in_blocks_of_any_size(monkeypatch):

@@ -185,6 +185,25 @@ def test_undecided_bays_that_are_narrower_than_the_outline_are_not_outlined():
     assert drawn.equals(inside)
 
 
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_numbers_of_axes_in_space_are_clear_of_the_marks_of_their_axis(size):
+    from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+    region = gsp.workspace.fixed_orientation(SHELL.scaled(size), resolution=0.5 * size)
+    ax = region.plot()
+    ax.figure.canvas.draw()
+    (low, high), axis = ax.get_zlim(), ax.zaxis
+    shown = [
+        t for t in axis.get_major_ticks() if low <= t.get_loc() <= high and t.label1.get_text()
+    ]
+    # The axis of z is the edge with the greatest x and y.
+    for tick in shown:
+        place = (ax.get_xlim()[1], ax.get_ylim()[1], tick.get_loc())
+        mark = ax.transData.transform(proj_transform(*place, ax.get_proj())[:2])
+        assert tick.label1.get_window_extent().x0 > mark[0]
+    assert len(shown) >= 2
+
+
 def test_undecided_parts_are_filled_as_hatches_are_coarser_than_some():
     looks = {patch.get_label(): patch for patch in flat().plot().patches}
     assert looks["undecided"].get_facecolor()[:3] not in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0))

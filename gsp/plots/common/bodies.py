@@ -131,9 +131,9 @@ def enclose(ax: Axes3D, points: Array, unit_name: str, size: float = 0.0) -> Non
         axis.pane.set_facecolor("white")
         axis.pane.set_edgecolor("#E8EAED")
         axis.set_tick_params(labelsize=7, colors="#5B616B")
+    name_lengths(ax, {"x": "x", "y": "y", "z": "z"}, unit_name)
     # As many numbers as fit on a side.
     set_space_ticks(ax, [max(round(8.2 * span / spans.max()), 2) for span in spans])
-    name_lengths(ax, {"x": "x", "y": "y", "z": "z"}, unit_name)
     # matplotlib makes all diagonals equally long: a tall box is drawn smaller, for its labels.
     rise = np.array([0.35, 0.22, 0.91])  # of the axes in this view
     tall = float(rise @ spans / norm(spans) / (rise.sum() / 3.0**0.5))

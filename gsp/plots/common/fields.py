@@ -171,8 +171,9 @@ def write_constant(ax: Axes, values: Array) -> None:
 def write_undrawable(ax: Axes, symbol: str, values: Array) -> None:
     """Write into empty axes why there is nothing to draw, such as "CTN is 0 at every pose"."""
     text = undrawable_words(symbol, values)
-    ax.text(0.5, 0.5, text, ha="center", va="center", color=GREY, transform=ax.transAxes)
-    ax.set_yticks([])
+    frame = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+    place = {"ha": "center", "va": "center", "transform": ax.transAxes}
+    ax.text(0.5, 0.5, text, color=GREY, bbox=frame, **place)
 
 
 def _corners(values: Any) -> Mask:

@@ -46,12 +46,15 @@ POSES_PER_CELL, CELLS_PER_SIDE = 20, (5, 60)
 def fill(ax: Axes, design: Design, name: str, edges: tuple[Array, Array], values: Array) -> None:
     """Fill cells (n, m) between edges with the values of an index."""
     scale = scale_of(values, name)
-    if scale is None:
-        write_undrawable(ax, symbol_text(name), values)
-    elif scale.constant:
-        known = np.ma.masked_invalid(0.0 * values)
-        ax.pcolormesh(*edges, known.T, cmap="Greys", vmin=-1.0, vmax=3.0)
-        write_constant(ax, values)
+    if scale is None or scale.constant:
+        # One value, which may be infinite, has one colour.
+        known = ~np.isnan(values)
+        grey = np.ma.masked_array(np.zeros(values.shape), ~known)
+        ax.pcolormesh(*edges, grey.T, cmap="Greys", vmin=-1.0, vmax=3.0)
+        if scale is None:
+            write_undrawable(ax, symbol_text(name), values[known] if known.any() else values)
+        else:
+            write_constant(ax, values)
     else:
         colours = COLOURS if INDICES[name].better == "higher" else REVERSED
         label = with_unit(name, INDICES[name].unit(design))

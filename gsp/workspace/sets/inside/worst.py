@@ -96,11 +96,13 @@ def worst(
     with meter(progress, "boxes") as report:
         bound, pose = search(name, given, report)
         value = value_at(design, pose, name, given)
-        if INDICES[name].of_determinant and not is_closed(bound, value, share):
+        # All indices are worst at singular poses, which the search for the least σ_min finds.
+        if name != SMALLEST and not is_closed(bound, value, share):
             scale = length or design.characteristic_length or design.rms_radius
             least, other = search(SMALLEST, {**given, "length": scale}, report)
-            bound = max(bound, _determinant_from(least, scale, design, limits.maximum, name))
-            if (there := value_at(design, other, name, given)) < value:
+            if INDICES[name].of_determinant:
+                bound = max(bound, _determinant_from(least, scale, design, limits.maximum, name))
+            if side * (there := value_at(design, other, name, given)) > side * value:
                 value, pose = there, other
     return Worst(value=value, bound=bound, pose=pose, closed=is_closed(bound, value, share))
 
