@@ -171,8 +171,8 @@ def write_constant(ax: Axes, values: Array) -> None:
 def write_undrawable(ax: Axes, symbol: str, values: Array) -> None:
     """Write into empty axes why there is nothing to draw, such as "CTN is 0 at every pose"."""
     text = undrawable_words(symbol, values)
-    frame = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-    place = {"ha": "center", "va": "center", "transform": ax.transAxes}
+    frame: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+    place: dict[str, Any] = {"ha": "center", "va": "center", "transform": ax.transAxes}
     ax.text(0.5, 0.5, text, color=GREY, bbox=frame, **place)
 
 
