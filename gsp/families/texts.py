@@ -23,7 +23,12 @@ from gsp.families.lee import (
     to_centre,
 )
 from gsp.families.lee.platforms import EDGES, KINDS
-from gsp.families.nawratil import example_design, example_pose, isotropic
+from gsp.families.nawratil import (
+    control_optimum,
+    example_design,
+    example_pose,
+    isotropic,
+)
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
@@ -97,6 +102,10 @@ def _isotropic(g: int, p: float, mu_deg: float) -> Design:
     return isotropic(g, p, np.deg2rad(mu_deg))
 
 
+def _control(g: int, ratio: float, rise_deg: float, phase_deg: float, mu_deg: float) -> Design:
+    return control_optimum(g, ratio, *np.deg2rad([rise_deg, phase_deg, mu_deg]).tolist())
+
+
 # Lengths without a unit; angles in degrees; shares of sides.
 FAMILIES: Mapping[str, Family] = MappingProxyType(
     {
@@ -117,6 +126,7 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         ),
         "nawratil-example": Family(_example, ("alpha_deg", "h")),
         "nawratil-isotropic": Family(_isotropic, ("g", "p", "mu_deg")),
+        "nawratil-control": Family(_control, ("g", "ratio", "rise_deg", "phase_deg", "mu_deg")),
     }
 )
 

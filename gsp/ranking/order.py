@@ -13,13 +13,7 @@ from gsp.checks import check_items, is_a
 from gsp.evaluation.blocks import DesignValues, by_design
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
-from gsp.evaluation.request import (
-    Request,
-    check_designs,
-    check_resume,
-    left_out,
-    make_request,
-)
+from gsp.evaluation.request import Request, check_designs, check_resume, left_out, make_request
 from gsp.evaluation.settings import Maximum, Settings, divide_by_largest, provenance
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose

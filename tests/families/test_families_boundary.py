@@ -10,7 +10,7 @@ import pytest
 import gsp
 from gsp.errors import GspError
 from gsp.families import lee
-from gsp.families.nawratil import example_set, motion, symmetric_sets
+from gsp.families.nawratil import control_optima, example_set, motion, symmetric_sets
 
 GOOD = {
     "a": 1.3, "b": 2.1, "h": 0.7, "x": 0.1, "y": -0.2, "z": 0.7, "alpha": 0.15, "beta": 0.2,
@@ -20,7 +20,9 @@ GOOD = {
     "start": (0.0, 0.0, 1.0), "end": (1.0, 0.0, 2.0), "base": np.eye(3), "platform": np.eye(3) + 1,
     "first": np.eye(3)[:2], "second": np.eye(3)[1:] + 1, "unit": "mm", "family": "lee-6-6",
     "base_radius": 2.0, "base_angle": 0.3, "platform_radius": 1.0, "platform_angle": 0.4,
-    "height": 1.5,
+    "height": 1.5, "ratio": 1.2, "rise": 0.5, "phase": 0.9, "radius": 2.0,
+    "posture": gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5).at(gsp.Pose([0.0, 0.0, 1.5])),
+    "ellipsoid": gsp.Ellipsoid((1.0, 1.0, 0.5)),
 }  # fmt: skip
 KINDS = {"alpha": 0.1, "beta": 0.2, "top": "centre", "base": "side"}
 OTHERS = {
@@ -36,7 +38,7 @@ FUNCTIONS = {
     **{name: getattr(lee, name) for name in lee.__all__ if name not in ("FAMILIES", "Separated")},
     **{
         name: getattr(module, name)
-        for module in (example_set, symmetric_sets, motion)
+        for module in (control_optima, example_set, symmetric_sets, motion)
         for name, value in vars(module).items()
         if inspect.isfunction(value) and value.__module__ == module.__name__ and name[0] != "_"
     },

@@ -33,6 +33,10 @@ HEXAPOD = {
         ),
         ("nawratil-example(alpha_deg=4, h=0.8)", nawratil.example_design(np.deg2rad(4.0))),
         ("nawratil-isotropic(g=3, p=0.7, mu_deg=10)", nawratil.isotropic(3, 0.7, np.deg2rad(10.0))),
+        (
+            "nawratil-control(g=4, ratio=1.5, rise_deg=20, phase_deg=50, mu_deg=10)",
+            nawratil.control_optimum(4, 1.5, *np.deg2rad([20.0, 50.0, 10.0])),
+        ),
     ],
 )
 def test_they_are_those_of_the_functions(text, design):

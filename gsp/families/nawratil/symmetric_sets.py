@@ -24,7 +24,14 @@ LEGS_OF_A_KIND = arguments.integer(3, 1000)
 
 
 @arguments.validated(g=LEGS_OF_A_KIND)
-def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Design:
+def set_m(
+    first: ArrayLike,
+    second: ArrayLike,
+    g: int,
+    *,
+    swap: Iterable[bool] | None = None,
+    **settings: Any,
+) -> Design:
     """Return a design of the set M: two legs, each turned g times about the z-axis.
 
     Parameters
@@ -33,6 +40,8 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
         Base anchor and platform anchor of leg 1 and of leg g + 1, in the axes of the source.
     g : int
         From 3 to 1000; the design has 2g legs.
+    swap : 2g booleans or None
+        The legs whose base and platform anchor are exchanged.
     settings : other parameters of `Design`
 
     Returns
@@ -43,8 +52,8 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     Raises
     ------
     InvalidInput
-        If `g` is outside of its range, on a keyword that is not a parameter of a design, or points
-        of other shapes.
+        If `g` is outside of its range, on a keyword that is not a parameter of a design, points of
+        other shapes, or `swap` that is not 2g booleans.
 
     *Source: Nawratil, Definition 4*
     """
@@ -52,12 +61,13 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     pairs = np.stack((_pair("first", first), _pair("second", second)))
     turned = Pose.from_rpy([0.0, 0.0, 0.0], _turns(g)).rotation
     points = np.einsum("kij,spj->skpi", turned, pairs).reshape(2 * g, 2, 3)
+    base, platform = _exchanged(points[:, 0], points[:, 1], swap)
     defaults: dict[str, Any] = {
         "name": f"nawratil-m-g{g}",
         "source": "Nawratil, Definition 4",
         "home": Pose([0.0, 0.0, 0.0]),
     }
-    return Design(["D1"] * (2 * g), points[:, 0], points[:, 1], **{**defaults, **settings})
+    return Design(["D1"] * (2 * g), base, platform, **{**defaults, **settings})
 
 
 @arguments.validated(
@@ -150,7 +160,7 @@ def set_n(
     if a == b:
         raise InvalidInput(expected("a, b", "two different numbers", f"{a}, {b}"))
     at_a, at_b = feet + a * directions, feet + b * directions
-    exchanged = _swaps(swap, 2 * g)[:, None]
+    base, platform = _exchanged(at_a, at_b, swap)
     defaults: dict[str, Any] = {
         "name": f"nawratil-n-g{g}",
         "source": "Nawratil, Definition 5",
@@ -158,8 +168,8 @@ def set_n(
     }
     return Design(
         ["D1"] * (2 * g),
-        np.where(exchanged, at_b, at_a),
-        np.where(exchanged, at_a, at_b),
+        base,
+        platform,
         **{**defaults, **settings},
     )
 
@@ -258,6 +268,12 @@ def _pair(what: str, value: ArrayLike) -> Array:
     if points.ndim != 2:
         raise InvalidInput(expected(what, "shape (2, 3)", f"shape {points.shape}"))
     return points
+
+
+def _exchanged(base: Array, platform: Array, swap: Iterable[bool] | None) -> tuple[Array, Array]:
+    """Return anchor points (n, 3), those of the legs that are marked in `swap` exchanged."""
+    chosen = _swaps(swap, len(base))[:, None]
+    return np.where(chosen, platform, base), np.where(chosen, base, platform)
 
 
 def _swaps(swap: Iterable[bool] | None, n: int) -> Mask:
