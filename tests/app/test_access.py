@@ -85,6 +85,51 @@ async def check(tab):
     return found["seen"]
 
 
+async def announced(tab, name):
+    """Role, value, ends and whether it can be used of a slider that is given the focus."""
+    await tab.send("DOM.focus", backendNodeId=await tab.named("slider", name))
+    answer = await tab.send("Runtime.evaluate", expression="document.activeElement")
+    found = await tab.send(
+        "Accessibility.getPartialAXTree", objectId=answer["result"]["objectId"],
+        fetchRelatives=False,
+    )  # fmt: skip
+    (node,) = found["nodes"]
+    facts = {one["name"]: one["value"].get("value") for one in node["properties"]}
+    ends = facts.get("valuemin"), facts.get("valuemax")
+    return (node["role"]["value"], node["name"]["value"]), float(node["value"]["value"]), ends
+
+
+def test_the_part_of_a_slider_that_has_the_focus_is_announced(visit):
+    async def work(tab):
+        await tab.click("tab", "Motion")
+        who, _, (low, high) = await announced(tab, "yaw")
+        assert (who, low, high) == (("slider", "yaw"), -180.0, 180.0)
+        await tab.enter("textbox", "yaw value", "12.5")
+        await tab.until("document.querySelector('[aria-valuenow=\"12.5\"]') !== null")
+        assert (await announced(tab, "yaw"))[1] == 12.5
+        await tab.click("tab", "Legs")
+        design = gsp.catalogue.design(SIX_THREE)
+        turned = motion.with_coordinate(started(design), "yaw", 12.5)
+        joint = design.at(turned.pose).joints[2]
+        who, value, (low, high) = await announced(tab, "joint d3")
+        assert who == ("slider", "joint d3")
+        assert value == pytest.approx(joint, rel=1e-4)
+        assert low <= joint <= high
+        # One that cannot be used states it, and does so no more once it can.
+        await tab.click("tab", "Motion")
+        off = "document.querySelector('[aria-label=\"time of the motion\"]')?.ariaDisabled"
+        await tab.until(f"{off} === 'true'")
+        await tab.click("button", "Record a motion")
+        await tab.click("button", "position z minus")
+        await asyncio.sleep(0.1)
+        await tab.click("button", "Record a motion")
+        await tab.until(f"{off} === null")
+        # None is announced twice.
+        assert await tab.run("document.querySelectorAll('.q-slider[role]').length") == 0
+
+    visit(work)
+
+
 @pytest.mark.parametrize("width", [1366, 390])
 def test_names_and_contrast(visit, width):
     async def work(tab):

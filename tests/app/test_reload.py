@@ -137,7 +137,7 @@ def test_a_slow_network(visit):
         await tab.send("Page.navigate", url=f"{address}/?design={OTHER}")
         state = started(gsp.catalogue.design(OTHER))
         await tab.until(f"{FACTS}?.includes({determinant(state)})", seconds=90.0)
-        slider = 'document.querySelector(\'[aria-label="yaw"] [tabindex="0"]\')'
+        slider = 'document.querySelector(\'[aria-label="yaw"][tabindex="0"]\')'
         await tab.until(f"{slider} !== null", seconds=60.0)
         await tab.run(f"{slider}.focus()")
         for _ in range(30):

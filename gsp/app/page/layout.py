@@ -35,7 +35,10 @@ CSS = "".join(
     path.read_text(encoding="utf-8")
     for path in (Path(__file__).parent / "style.css", SCENE / "scene.css")
 )
-CONNECTION = (Path(__file__).parent / "connection.js").read_text(encoding="utf-8")
+CONNECTION, SLIDERS = (
+    (Path(__file__).parent / name).read_text(encoding="utf-8")
+    for name in ("connection.js", "sliders.js")
+)
 OFFLINE = "Not connected: changes are not taken. The page connects again by itself."
 # Seconds between two looks at whether the address is that of the state.
 ADDRESS_STEP = 0.3
@@ -94,7 +97,7 @@ def build(default: Design, searches: Searches, query: Iterable[tuple[str, str]])
     ui.add_css(CSS)
     ui.add_body_html(
         f'<div id="gsp-offline" role="alert" data-text="{OFFLINE}" hidden></div>'
-        f'<script type="module">{CONNECTION}</script>'
+        f'<script type="module">{CONNECTION}</script><script type="module">{SLIDERS}</script>'
     )
     ui.colors(primary="#005f99")
     _bar(client)

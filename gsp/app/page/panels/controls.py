@@ -78,7 +78,9 @@ class Row:
         if any(self.slider.props.get(name) != end for name, end in ends.items()):
             self.slider.props.update(ends)
             self.slider.update()
-        self.slider.value = float(np.clip(np.nan_to_num(value, nan=low), low, high))
+        # Without rounding, which screen readers would announce.
+        shown = float(f"{np.nan_to_num(value, nan=low):.12g}")
+        self.slider.value = float(np.clip(shown, low, high))
         self.field.show(resolved(value, max(abs(low), abs(high))))
 
     def enable(self, able: bool) -> None:
