@@ -15,6 +15,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.model.units import power_base
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -292,7 +293,7 @@ class Index(ReadOnly):
         if self.unit_power == "length":
             return length
         power = design.determinant_power
-        return {0: "1", 1: length}.get(power, f"{length}^{power}")
+        return {0: "1", 1: length}.get(power, f"{power_base(length)}^{power}")
 
     @arguments.validated(
         design=arguments.kind(Design, "a gsp.Design"),

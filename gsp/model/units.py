@@ -33,3 +33,12 @@ def check_unit(what: str, value: Any) -> str:
         wanted = 'the name of a unit without spaces around it, or ""'
         raise InvalidInput(expected(what, wanted, brief(value)))
     return text
+
+
+def power_base(unit: str) -> str:
+    """Return the name of a unit as the base of a power: in parentheses if it is no single word.
+
+    >>> power_base("mm") + "³", power_base("furlong / fortnight") + "³"
+    ('mm³', '(furlong / fortnight)³')
+    """
+    return unit if unit.isalpha() or not unit else f"({unit})"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.app.page.panels.modes import unable, words
 from gsp.app.scene.drawing import film, merit_colour
 from gsp.app.scene.modes import ghosts, modes_of, taken
 from gsp.app.scene.region import region_of, surface
@@ -63,6 +64,17 @@ def test_modes_of_undefined_joints_give_a_reason():
     onto = gsp.Pose(flat.base_points[0] - flat.platform_points[0])
     with pytest.raises(gsp.GspError, match="joints: expected defined values"):
         modes_of(started(flat, onto))
+
+
+def test_what_there_is_of_modes_is_stated_in_sentences():
+    ring = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3.0])
+    design = gsp.Design(["D1"] * 6, 2.0 * ring, ring, home=gsp.Pose([0.0, 0.0, 1.5]))
+    found = words(modes_of(started(design)))
+    assert found.startswith("No mode is listed. The platform can move with locked actuators")
+    assert words(modes_of(state_of(SIX_THREE))).startswith("8 modes. In the scene")
+    assert unable(started(design)) == ""
+    seven = gsp.Design(["D1"] * 7, [*(2.0 * ring), ring[1]], [*ring, ring[3]], home=design.home)
+    assert unable(started(seven)) == "For designs with six actuators only; this one has 7."
 
 
 # --- region of positions ---

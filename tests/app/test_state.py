@@ -245,6 +245,13 @@ def test_a_joint_out_of_reach_changes_nothing(toz):
         assert after.pose is toz.pose
 
 
+def test_a_joint_that_a_limit_holds_out_of_reach_names_the_entry_and_the_limit():
+    state = limited(0.5, 1e4)
+    after = motion.with_joint(state, 3, 0.2)
+    assert after.message.startswith("no pose with d4 = 0.2, nor with its limit 0.5: ")
+    assert after.pose is state.pose
+
+
 # --- limits ---
 
 
@@ -418,6 +425,42 @@ def test_what_is_left_of_a_stroke():
     assert joint.left == pytest.approx(min(joint.value - 100.0, 160.0 - joint.value))
     assert joint.share == pytest.approx((joint.value - 100.0) / 60.0)
     assert math.isnan(read(sessions.started(choices.named(TOZ))).joints[0].share)
+
+
+def test_a_joint_in_the_middle_of_its_stroke_has_100_percent_left():
+    state = sessions.started(choices.named(TOZ))
+    joints = state.design.at(state.pose).joints
+    strokes = np.stack((joints - 8.0, joints + 8.0), axis=1)
+    middle = replace(state, design=state.design.replace(strokes=strokes))
+    assert "100 % of half the stroke" in tables.least_left(read(middle))
+    strokes[2, 1] += 8.0 - 1e-3  # all but the third are in the middle
+    strokes[2, 0] += 8.0 - 4.321
+    near = replace(state, design=state.design.replace(strokes=strokes))
+    half = (16.0 - 1e-3 + 4.321) / 2.0
+    assert f"{int(100.0 * 4.321 / half)} % of half the stroke" in tables.least_left(read(near))
+
+
+def test_a_redundant_design_shows_the_root_of_the_gram_determinant_and_names_it():
+    six = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    base = np.concatenate((six.base_points, [[0.1, 0.0, 0.0]]))
+    top = np.concatenate((six.platform_points, [[0.0, 0.1, 0.0]]))
+    state = sessions.started(gsp.Design(["D1"] * 7, base, top, home=six.home))
+    rows = state.design.at(state.pose).jacobian
+    wanted = np.sqrt(np.linalg.det(rows.T @ rows))
+    shown = tables.facts(state, read(state))
+    found = re.search(r"<dt>\|det J\|.*?</dt><dd>(.*?)</dd>(.*?)</div>", shown)
+    assert float(found[1]) == pytest.approx(wanted, rel=1e-6)
+    assert "√det JᵀJ of 7 rows" in found[2]
+
+
+@pytest.mark.parametrize(
+    ("unit", "power"),
+    [("mm", "mm³"), ("", "length³"), ("furlong / fortnight", "(furlong / fortnight)³"),
+     ("10 mm", "(10 mm)³"), ("x^2", "(x^2)³")],
+)  # fmt: skip
+def test_compound_units_are_in_parentheses_below_a_power(unit, power):
+    state = sessions.started(choices.named("lee-2000-3-3").replace(unit=unit))
+    assert f"<dt>det J [{power}]</dt>" in tables.facts(state, read(state))
 
 
 def test_indices_are_those_of_the_library(toz):

@@ -208,6 +208,10 @@ CHANGES = {
     "nan": ("[9, 1, 1]", "[nan, 1, 1]", "platform_point", "expected finite"),
     "table": ("[9, 1, 1]", "{x = 1}", "platform_point", "expected real numbers"),
     "strokes": ("strokes = [1, 2]", "strokes = [2, 1]", "strokes", "least ≤ greatest"),
+    "strokes in pairs": (
+        "strokes = [1, 2]", "strokes = [[2, 1]]", "strokes",
+        r"least ≤ greatest, received \[2.0, 1.0\]",
+    ),
     "strokes of a distance": ("strokes = [1, 2]", "strokes = [-1, 2]", "strokes", "numbers ≥ 0"),
     "strokes ragged": ("strokes = [1, 2]", "strokes = [[1, 2], [3]]", "strokes", "real numbers"),
     "strokes of two": (

@@ -15,6 +15,7 @@ from gsp.app.state.session import Session
 from gsp.determinant import Maximum
 from gsp.geometry.vectors import Array
 from gsp.indices.table import ARROWS
+from gsp.model.units import power_base
 from gsp.rounding import rounded_down
 
 # What is left of a stroke, as a share of its bounds, below which it is rounding: motions end so
@@ -39,8 +40,11 @@ def facts(state: Session, reading: Reading) -> str:
     shown = [reading.index(n) for n in ("quality_index", "control_number", "condition_number")]
     values += [(one.index.symbol, one.value) for one in shown]
     least, near = reading.least, reading.index("singularity_distance")
-    cells = [(name, number(value, 7 if name.startswith("det") else 5)) for name, value in values]
-    gauges = {}
+    redundant = len(reading.joints) > len(reading.jacobian.T)
+    if redundant:  # J is not square
+        values[0] = (f"|det J|{bracket}", reading.index("manipulability").value)
+    cells = [(name, number(value, 7 if "det" in name else 5)) for name, value in values]
+    gauges = {values[0][0]: _note(f"√det JᵀJ of {len(reading.joints)} rows")} if redundant else {}
     if np.isfinite(least.left):
         cells.append((f"least left, {least.name}", _left(least)))
         gauges[cells[-1][0]] = _stroke_gauge(least)
@@ -58,6 +62,11 @@ def facts(state: Session, reading: Reading) -> str:
         for name, value in cells
     )
     return f'<dl class="gsp-facts" style="margin:0">{body}</dl>'
+
+
+def _note(words: str) -> str:
+    """Return a note below a fact."""
+    return f'<dd class="gsp-share"><small>{escape(words)}</small></dd>'
 
 
 def _resolved(value: float, singular: bool) -> float:
@@ -105,7 +114,8 @@ def _singularity_gauge(distance: float, length: float | None) -> str:
 def _percent(share: float) -> str:
     """Return a share in percent, rounded down: of a lower bound it is one."""
     percent = 0.0 if abs(share) <= LEFT_ROUNDING else rounded_down(100.0 * share, 2)
-    return f"{number(percent, 2)} %"
+    # No power of ten for 100 and more, nor digits beyond the two that are known.
+    return f"{number(percent, 2 if abs(percent) < 99.5 else 15)} %"
 
 
 def _meter(share: float, name: str, words: str) -> str:
@@ -167,7 +177,7 @@ def volume(found: Surface, unit: str) -> str:
     """Return the volume of a sampled region with its error."""
     error = 100.0 * found.volume_error / found.volume if found.volume > 0.0 else np.inf
     share = f" ± {error:.0f} %" if 0.5 <= error < 100.0 else " ± 1 %" if error < 0.5 else ""
-    cube = f" {unit}³" if unit else ""
+    cube = f" {power_base(unit)}³" if unit else ""
     cut = ", cut off" if found.cut else ""
     return f"volume ≈ {number(found.volume, 3)}{cube}{share}, sampled{cut}"
 

@@ -13,6 +13,7 @@ from gsp.app.report.study import PLANES, REPORT_BOXES, Study, attempted, quick
 from gsp.app.report.summary import measured, place_text
 from gsp.geometry.pose import PoseBox
 from gsp.indices import INDICES
+from gsp.model.units import power_base
 from gsp.proof.certificate import Certificate
 from gsp.rounding import rounded_down, rounded_up
 
@@ -24,14 +25,14 @@ def workspace(study: Study) -> str:
             "<p class=note>Nothing bounds the workspace: the design has no strokes, and no task "
             "with limits was given.</p>"
         )
-    unit, parts = study.state.design.unit, []
+    base, parts = power_base(study.state.design.unit), []
+    squared, cubed = (base and f"{base}{power}" for power in "²³")
     for name, _ in PLANES:
         low, high = study.sections[name].area
-        area = f"area {bracket(low, high)} {unit}{'²' if unit else ''}".rstrip()
+        area = f"area {bracket(low, high)} {squared}".rstrip()
         shown, why = attempted(lambda n=name: pictures.of_section(study, n))
         parts.append(f"<figure>{shown or escape(why)}<figcaption>{area}</figcaption></figure>")
     low, high = study.space.volume
-    cubed = f"{unit}³" if unit else ""
     facts = [("volume", f"{bracket(low, high)} {cubed}".rstrip())]
     part, _ = attempted(lambda: study.space.part_of(study.state.pose.position))
     if part is not None and len(study.space.parts) > 1:

@@ -219,7 +219,6 @@ def with_joint(state: Session, number: int, value: float) -> Session:
     *Source: Lee2000, figure 40, "Connector Length Change".*
     """
     design = state.design
-    name = design.joint_names[number]
     posture = design.at(state.pose)
     if posture.undefined:
         reason = posture.undefined[0].reason
@@ -233,7 +232,7 @@ def with_joint(state: Session, number: int, value: float) -> Session:
     except GspError as error:
         return state.saying(str(error))
     if not found.converged:
-        return state.saying(_unreached(name, joints[number], design, number, str(found.status)))
+        return state.saying(_unreached(design, number, (value, joints[number]), str(found.status)))
     return replace(state, pose=found.pose, message=bound)
 
 
@@ -250,13 +249,16 @@ def _within(state: Session, number: int, value: float, now: float) -> tuple[floa
     return inside, _ended(state.design, number, bound, beyond=inside != bound)
 
 
-def _unreached(name: str, value: float, design: Design, number: int, status: str) -> str:
-    shown = f"{np.rad2deg(value):.4g}°" if design.angular[number] else f"{value:.6g}"
+def _unreached(design: Design, number: int, values: tuple[float, float], status: str) -> str:
+    """Return why a joint has not a value: that was requested, and at which a limit held it."""
+    angular, name = design.angular[number], design.joint_names[number]
+    wanted, held = (f"{np.rad2deg(v):.4g}°" if angular else f"{v:.6g}" for v in values)
+    limit = "" if values[0] == values[1] else f", nor with its limit {held}"
     why = {
         "singular": "the way there ends at a singular pose, so the value is out of reach from here",
         "undefined": "the joint cannot have this value",
     }.get(status, "the search did not converge")
-    return f"no pose with {name} = {shown}: {why}; nothing was changed"
+    return f"no pose with {name} = {wanted}{limit}: {why}; nothing was changed"
 
 
 def has_strokes(design: Design) -> bool:

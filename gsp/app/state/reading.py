@@ -138,11 +138,11 @@ class Reading:
 def powers(unit: str) -> str:
     """Return a unit for people: nothing for 1, raised digits.
 
-    >>> powers("mm^3"), powers("m^-2"), powers("1"), powers("mixed")
-    ('mm³', 'm⁻²', '', 'mixed')
+    >>> powers("mm^3"), powers("(ft / s)^-2"), powers("1"), powers("mixed")
+    ('mm³', '(ft / s)⁻²', '', 'mixed')
     """
-    stem, _, power = unit.partition("^")
-    return "" if unit == "1" else stem + power.translate(RAISED)
+    stem, mark, power = unit.rpartition("^")
+    return "" if unit == "1" else stem + power.translate(RAISED) if mark else unit
 
 
 def gauges(index: Index, values: Array) -> Array:

@@ -14,6 +14,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes import AssemblyModes, assembly_modes
+from gsp.kinematics.modes.modes import STATUS_MEANINGS
 from gsp.model.design import Design
 
 if TYPE_CHECKING:
@@ -21,14 +22,6 @@ if TYPE_CHECKING:
 
 # Words for the sign of det J.
 SIDES = {-1.0: "-", 0.0: "singular", 1.0: "+"}
-# What each status means, for a line below the table.
-WARNINGS = {
-    "multiple": "some of the modes are singular poses, found to about half of the digits",
-    "moving": "the platform can move with locked actuators: there are poses besides these",
-    "incomplete": "some paths were lost: modes may be missing",
-    "undefined": "joint values that are missing, or none that a joint can have",
-    "impossible": "two joint values contradict each other, whatever the pose",
-}
 
 
 def all_modes(
@@ -54,8 +47,8 @@ def all_modes(
     say(f"{_title(design, modes)}; position in {unit}, angles {order} in degrees", "bold")
     if len(table):
         _print(table, certify=certify)
-    if modes.status in WARNINGS:
-        warn(f"{modes.status}: {WARNINGS[modes.status]}")
+    if modes.status in STATUS_MEANINGS:
+        warn(f"{modes.status}: {STATUS_MEANINGS[modes.status]}")
     if plot is not None and not len(table):
         warn(f"{plot} is not written: there is no real mode to draw")
     elif plot is not None:

@@ -18,6 +18,7 @@ from gsp.figures import INK
 from gsp.files.tables import write_table
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
+from gsp.model.units import power_base
 from gsp.planar import PlanarComponent, PlanarDesign, on_boundary, planar_components
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def _print_parts(parts: tuple[PlanarComponent, ...], place: tuple[float, float],
     show_table(table)
     own = [str(i) for i, part in enumerate(parts) if part.contains(place)]
     total = number(sum(part.area for part in parts), 7)
-    squared = f" {unit}²" if unit else ""
+    squared = f" {power_base(unit)}²" if unit else ""
     text = f"{counted(len(parts), 'component')}, area {total}{squared}"
     say(text + (f"; the radiating point is in component {own[0]}" if own else ""))
 

@@ -13,6 +13,7 @@ from gsp.cli.outputs.regions import Files
 from gsp.files.tables import write_table
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.model.units import power_base
 from gsp.workspace.sides import Side
 
 if TYPE_CHECKING:
@@ -170,4 +171,4 @@ def _cell(value: object, size: float) -> str:
 
 def cubic(unit: str) -> str:
     """Return the unit of a volume."""
-    return f"{unit}³" if unit else ""
+    return f"{power_base(unit)}³" if unit else ""

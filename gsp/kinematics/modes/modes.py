@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +27,15 @@ from gsp.model.design import Design, check_undriven
 LARGEST_DISTANCE_SIZES = 1e6
 # Joint error above which a mode is polished, how often, and the singular values that count then.
 POLISHED_RESIDUAL, JOINT_STEPS, POLISHED_RCOND = 1e-14, 3, 1e-12
+
+# What each status but "found" means, for people.
+STATUS_MEANINGS = MappingProxyType({
+    "multiple": "some of the modes are singular poses, found to about half of the digits",
+    "moving": "the platform can move with locked actuators: there are poses besides those listed",
+    "incomplete": "some paths were lost: modes may be missing",
+    "undefined": "joint values that are missing, or none that a joint can have",
+    "impossible": "two joint values contradict each other, whatever the pose",
+})  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -232,15 +232,15 @@ class Reader:
         given, shape = leg.get("strokes"), (len(signed), 2)
         if given is None:
             return np.full(shape, np.nan)
-        if shape[0] == 1 and isinstance(given, list) and len(given) == 2:
-            given = [given]
-        limits = self.array({"strokes": given}, "strokes", shape, "legs", i)
-        if (limits[:, 0] > limits[:, 1]).any():
-            message = expected("value", "least ≤ greatest", brief(given))
-            self.fail(message, "strokes", "legs", i)
-        if (~signed & below_zero(limits)).any():
+        pair = shape[0] == 1 and isinstance(given, list) and len(given) == 2
+        limits = self.array({"strokes": [given] if pair else given}, "strokes", shape, "legs", i)
+        if (reversed_ := limits[:, 0] > limits[:, 1]).any():
+            got = brief(limits[reversed_][0].tolist())
+            self.fail(expected("value", "least ≤ greatest", got), "strokes", "legs", i)
+        if (below := ~signed & below_zero(limits)).any():
             wanted = "numbers ≥ 0, as no distance is negative"
-            self.fail(expected("value", wanted, brief(given)), "strokes", "legs", i)
+            got = brief(limits[below][0].tolist())
+            self.fail(expected("value", wanted, got), "strokes", "legs", i)
         return limits
 
     def direction(self, leg: dict[str, Any], side: str, point: Array, line: bool, i: int) -> Array:

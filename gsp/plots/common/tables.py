@@ -76,6 +76,6 @@ def with_unit(name: str, unit: str) -> str:
 
 def _power(unit: str) -> str:
     """Return "mm^3" with its power raised."""
-    stem, _, power = unit.partition("^")
+    stem, _, power = unit.rpartition("^")
     raised = power.strip("()").lstrip("-").isdecimal()
     return rf"{plain(stem)}$^{{{power}}}$" if raised else plain(unit)

@@ -9,7 +9,9 @@ from nicegui import ui
 from gsp.app.page.client import Client
 from gsp.app.page.jobs import job
 from gsp.app.scene.modes import Modes, modes_of, taken
+from gsp.app.state.session import Session
 from gsp.errors import GspError
+from gsp.kinematics.modes.modes import STATUS_MEANINGS
 
 SIGNS = {-1.0: "det J < 0", 0.0: "singular", 1.0: "det J > 0"}
 
@@ -29,9 +31,11 @@ def modes_section(client: Client) -> None:
         .props('role=group aria-label="Assembly modes"')
     )
     drawn: list[Modes] = []
+    searching: list[Session] = []
 
     async def search() -> None:
         state = client.state
+        searching.append(state)
         find.disable()
         note.text = "processing; the first search for legs of one kind takes longer"
         try:
@@ -40,7 +44,8 @@ def modes_section(client: Client) -> None:
             note.text = str(error)
             return
         finally:
-            find.enable()
+            searching.clear()
+            find.set_enabled(not unable(client.state))
         if found is not None and found.belong_to(client.state):
             client.take_modes(found)
         else:
@@ -50,7 +55,8 @@ def modes_section(client: Client) -> None:
         modes = client.modes
         hide.set_visibility(modes is not None)
         if modes is None:
-            note.text = ""
+            note.text = unable(client.state)
+        find.set_enabled(not unable(client.state) and not searching)
         if drawn != [modes]:
             buttons.clear()
             drawn[:] = [] if modes is None else [modes]
@@ -64,15 +70,23 @@ def modes_section(client: Client) -> None:
     client.on_move(follow, "legs")
 
 
+def unable(state: Session) -> str:
+    """Return why the modes of a design cannot be searched for, "" where they can."""
+    number = len(state.design.joint_names)
+    return "" if number == 6 else f"For designs with six actuators only; this one has {number}."
+
+
 def words(modes: Modes) -> str:
     """Return how many modes there are, and what their colours in the scene mean."""
     count = len(modes.sides)
-    status = "" if modes.status == "found" else f" ({modes.status})"
+    status = STATUS_MEANINGS.get(modes.status, "")
+    sentence = f" {status[:1].upper()}{status[1:]}." if status else ""
     if not count:
-        return f"no mode{status}"
+        return f"No mode is listed.{sentence}"
     return (
-        f"{count} modes{status}. In the scene the others are grey where det J has the sign of the "
-        "present one, else purple. A choice is a jump, and no motion."
+        f"{count} {'mode' if count == 1 else 'modes'}.{sentence} In the scene the others are grey "
+        "where det J has the sign of the present one, else purple. A choice is a jump, and no "
+        "motion."
     )
 
 
