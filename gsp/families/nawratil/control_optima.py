@@ -136,7 +136,7 @@ def _solved(ratio: float, rise: float, phase: float) -> _Kind:
     q = 1.0 + alpha
     most = float(np.arcsin(np.sqrt((1.0 - q[1] * LEAST_RISE**2) / q[0])))
     if not LEAST_RISE <= rise <= most:
-        raise InvalidInput(expected("rise", f"an angle in [{LEAST_RISE}, {most:.9g}]", rise))
+        raise InvalidInput(expected("rise", f"an angle in [{LEAST_RISE}, {most:.9g}] rad", rise))
     square = (1.0 - q[0] * np.sin(rise) ** 2) / q[1]
     sine = np.array([np.sin(rise), -np.sqrt(square)])
     cosine = np.array([np.cos(rise), np.sqrt(1.0 - square)])
