@@ -514,6 +514,7 @@ VARIADIC: dict[str, Any] = {
     "brackets.bracket": PLAIN,
     "Pose.reshape": (1,),
     "PlanarPose.reshape": (1,),
+    "control_optima.control_optimum": {"strokes": None, "unit": "mm"},
     "symmetric_sets.set_m": {"strokes": None, "unit": "mm"},
     "symmetric_sets.set_n": {"strokes": None, "unit": "mm"},
     "families.set_p": {"strokes": None, "unit": "mm"},
