@@ -305,6 +305,14 @@ def test_docstring_is_complete(name):
     assert missing(ALL[name]) == []
 
 
+@pytest.mark.parametrize("name", ALL)
+def test_no_range_before_a_unit_is_read_as_a_link(name):
+    """In Markdown "[0, 1] [1]" is the text "0, 1" with a link to the target "1"."""
+    text = re.sub(r"`[^`]*`", "", inspect.getdoc(ALL[name]) or "")
+    prose = [line for line in text.splitlines() if not line.lstrip().startswith((">>>", "..."))]
+    assert not re.search(r"\] \[", " ".join(prose))
+
+
 def test_public_names_are_found():
     """Classes, methods, properties, functions; in packages and in public modules."""
     assert {

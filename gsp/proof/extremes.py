@@ -49,7 +49,7 @@ ENDS_TOLERANCE = 0.05
 class Bounds(tuple[float, float]):
     """A pair (low, high) that encloses every value over a box, and the record of its search.
 
-    Parameters
+    Attributes
     ----------
     low, high : float [of the quantity]
         The pair: proven bounds.

@@ -80,7 +80,7 @@ class PoseTolerance(ReadOnly):
 
     @property
     def lost(self) -> Array:
-        """Share of the copies for which no pose was found, shape (...), in [0, 1] [1]."""
+        """Share [1] of the copies for which no pose was found, shape (...), in [0, 1]."""
         return np.asarray(np.isnan(self.displacements).any(axis=-1).mean(axis=0))
 
     def quantiles(self, share: float = 0.95) -> Array:
