@@ -117,7 +117,8 @@ def forward(
     ----------
     design : Design
     joints : (..., n) array_like [unit of the design, rad]
-        Actuated distances and angles, in the order of `design.joint_names`.
+        Actuated distances and angles, in the order of `design.joint_names`; names of the columns of
+        a DataFrame are not read.
     guess : Pose of batch shape (...)
         Where to start; its batch shape and that of `joints` broadcast.
     tolerance : float [1, rad]

@@ -578,10 +578,11 @@ def test_a_file_without_texts_where_they_belong_or_without_keys_is_refused(sqlit
     assert store.put(entry_of(true, form))
     export_maxima(store, tmp_path / "maxima.json")
     content = json.loads((tmp_path / "maxima.json").read_text(encoding="utf-8"))
-    content["maxima"][0]["library"] = 10**400
-    (tmp_path / "long.json").write_text(json.dumps(content), encoding="utf-8")
-    with pytest.raises(MalformedFile, match="library: expected a text"):
-        import_maxima(store, tmp_path / "long.json")
+    for name in (10**400, "\ud800", "x" * 201):
+        content["maxima"][0]["library"] = name
+        (tmp_path / "long.json").write_text(json.dumps(content), encoding="utf-8")
+        with pytest.raises(MalformedFile, match="library: expected a text of at most 200"):
+            import_maxima(store, tmp_path / "long.json")
     with pytest.raises(InvalidInput, match="library: expected a text"):
         store.put({**entry_of(true, form), "library": 5})
     (tmp_path / "none.csv").write_bytes(b"a,b\n")

@@ -21,6 +21,8 @@ from gsp.determinant.store.schema import FIELDS, INTEGERS
 from gsp.errors import GspError, InvalidInput, brief, expected
 
 STRUCTURES = ("position", "rotation", "design", "domain")
+# Characters of the name and version of the library that found a maximum.
+LONGEST_NAME = 200
 # The end of the year 9999, which `datetime` can represent [s].
 LATEST = 253402300799.0
 
@@ -138,8 +140,9 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
         raise InvalidInput(expected("key", f"{key}, which its design has", brief(row["key"])))
     maximum = maximum_of(row, design_of(legs, rows), region_of(domain))
     kept = {name: row.get(name) for name in FIELDS}
-    if not isinstance(kept["library"], str | None):
-        raise InvalidInput(expected("library", "a text", brief(kept["library"])))
+    if not _is_name(kept["library"]):
+        wanted = f"a text of at most {LONGEST_NAME} characters"
+        raise InvalidInput(expected("library", wanted, brief(kept["library"])))
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in STRUCTURES}
     whole = {k: int(v) for k in INTEGERS if (v := getattr(maximum, k, None)) is not None}
     version = METHOD if kept["version"] is None else int(float(kept["version"]))
@@ -159,6 +162,15 @@ def _domain(value: Any) -> list[Any] | None:
             return ["near home", *check_array("domain", [displacement, angle], (2,)).tolist()]
     wanted = 'null, ["box", [low, high], order] or ["near home", displacement, angle]'
     raise InvalidInput(expected("domain", wanted, brief(value)))
+
+
+def _is_name(value: Any) -> bool:
+    """Return whether a value is a short text that can be encoded, or None."""
+    if value is None:
+        return True
+    if not isinstance(value, str) or len(value) > LONGEST_NAME:
+        return False
+    return not any("\ud800" <= letter <= "\udfff" for letter in value)
 
 
 def _moment(value: Any) -> float | None:
