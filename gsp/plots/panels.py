@@ -11,7 +11,7 @@ from gsp.figures import INK
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.scales import spans_much
-from gsp.plots.common.style import CLASSES, GREY, VERMILION, design_label, symbol_text
+from gsp.plots.common.style import CLASSES, GREY, VERMILION, design_label, log_ticks, symbol_text
 from gsp.plots.common.tables import column, index_label
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 OUTSIDE_SHARE = 0.08
 
 
-def labelled_panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
-    """Draw a panel with the names of both indices on its axes."""
-    panel(ax, table, x, y)
+def labelled_panel(ax: Axes, table: pd.DataFrame, x: str, y: str, *, alone: bool = False) -> None:
+    """Draw a panel with the names of both indices on its axes, which have more numbers if alone."""
+    panel(ax, table, x, y, alone=alone)
     ax.set_xlabel(mean_label(table, x))
     ax.set_ylabel(mean_label(table, y))
 
@@ -51,7 +51,7 @@ class Places(NamedTuple):
     name: str
 
 
-def panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
+def panel(ax: Axes, table: pd.DataFrame, x: str, y: str, *, alone: bool = False) -> None:
     """Draw the mean of one index against that of another, the better end at the top right.
 
     Infinite means, and 0 on a logarithmic axis, are on a dotted line beyond the others.
@@ -73,9 +73,13 @@ def panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
         "zorder": 3,
     }
     ax.scatter(across.values[best], up.values[best], linewidths=0.6, **star)
-    _ticks(ax, across.log, up.log)
-    for axis, there in ((ax.xaxis, across), (ax.yaxis, up)):
+    for axis, there, name in ((ax.xaxis, across, x), (ax.yaxis, up, y)):
+        _set_ticks(axis, there.log, alone=alone, integer=name == "rank")
         mark_beyond(ax, axis, there)
+    ax.grid(True, which="major")
+    ax.set_axisbelow(True)
+    ax.tick_params(which="both", length=0, labelsize=8)
+    ax.spines[["top", "right"]].set_visible(False)
     if _lower(x):
         ax.invert_xaxis()
     if _lower(y):
@@ -109,17 +113,17 @@ def mark_beyond(ax: Axes, axis: Axis, places: Places) -> None:
         axis.set_ticks([])
 
 
-def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
+def _set_ticks(axis: Axis, log: bool, *, alone: bool, integer: bool) -> None:
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-    for axis, log in ((ax.xaxis, wide), (ax.yaxis, tall)):
-        axis.set_major_locator(LogLocator(numticks=4) if log else MaxNLocator(3))
-        if log:
-            axis.set_minor_formatter(NullFormatter())
-    ax.grid(True, which="major")
-    ax.set_axisbelow(True)
-    ax.tick_params(which="both", length=0, labelsize=8)
-    ax.spines[["top", "right"]].set_visible(False)
+    if log and alone:
+        low, high = sorted(axis.get_view_interval())
+        log_ticks(axis, low, high)
+    elif log:
+        axis.set_major_locator(LogLocator(numticks=4))
+        axis.set_minor_formatter(NullFormatter())
+    else:
+        axis.set_major_locator(MaxNLocator(6 if alone else 3, integer=integer))
 
 
 def places(table: pd.DataFrame, name: str) -> Places:

@@ -119,7 +119,7 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
     x, y = (name if name == "rank" else _one(table, name) for name in (x, y))
     with style():
         ax = axes_or_new(ax, 6.4, 4.8)
-        labelled_panel(ax, table, x, y)
+        labelled_panel(ax, table, x, y, alone=True)
         ax.legend(handles=marks(table), loc="best", handletextpad=0.3)
         return ax
 

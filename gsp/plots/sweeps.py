@@ -93,9 +93,9 @@ def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Fi
 def along(table: pd.DataFrame, index: str | None = None, ax: Axes | None = None) -> Axes:
     """Return axes with an index drawn against the coordinate of a sweep along a line.
 
-    The axis of values is linear and shows both bounds where the index has them; it is logarithmic
-    where the index has no bound. There infinite values lie outside the axes. Where no value can be
-    drawn, the axes state why.
+    The axis of values is linear where the index has two bounds, and begins at a bound that is near
+    the values; it is logarithmic where the index has no bound. There infinite values lie outside
+    the axes. Where no value can be drawn, the axes state why.
 
     Parameters
     ----------

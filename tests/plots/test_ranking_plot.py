@@ -38,6 +38,16 @@ def points(ax, table):
     return pd.concat(found).sort_index().to_numpy()
 
 
+def test_large_axes_have_numbers_enough_and_ranks_are_integers(table):
+    for names in (("control_number", "condition_number"), ("rank", "control_number")):
+        ax = against(table, *names)
+        ax.figure.canvas.draw()
+        for axis in (ax.xaxis, ax.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            assert sum(low <= x <= high for x in axis.get_majorticklocs()) >= 3
+    assert all(float(x).is_integer() for x in ax.get_xticks())
+
+
 def test_points_are_the_means(table):
     ax = against(table, "condition_number", "control_number")
     wanted = table[["condition_number_mean", "control_number_mean"]].to_numpy()

@@ -105,8 +105,9 @@ def log_ticks(axis: Axis, low: float, high: float) -> None:
         axis.set_major_locator(MaxNLocator(4 if 1e-4 <= low and high < 1e5 else 2))
         axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
         axis.set_minor_locator(MaxNLocator(20))
-    elif np.floor(np.log10(high)) - np.ceil(np.log10(low)) < 1.0:  # one power of ten, or none
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    elif (steps := np.floor(np.log10(high)) - np.ceil(np.log10(low))) < 2.0:
+        # One power of ten or none, or two of them.
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if steps < 1.0 else (1.0, 3.0)))
         axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
     else:
         axis.set_major_locator(LogLocator(numticks=6))
