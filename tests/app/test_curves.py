@@ -37,6 +37,16 @@ def test_a_curve_has_the_values_of_postures(toz, where):
         assert found.values[i] == pytest.approx(float(wanted), rel=1e-9)
 
 
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 1.0])
+def test_the_line_at_the_present_pose_keeps_its_digits(size):
+    """ECharts rounds the place of a line to its `precision`, by default to two decimals."""
+    state = started(gsp.catalogue.design("dehaeze-general").scaled(size))
+    mark = curve_options(curves.curve(state, "control_number", "z"))["series"][0]["markLine"]
+    (place,) = mark["data"]
+    drawn = float(f"{place['xAxis']:.{mark['precision']}f}")
+    assert drawn == pytest.approx(state.pose.position[2], rel=1e-9)
+
+
 @pytest.mark.parametrize("axes", curves.PLANES)
 def test_a_map_has_the_values_of_postures(toz, axes):
     found = curves.map_over(toz, "manipulability", axes)

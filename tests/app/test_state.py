@@ -178,6 +178,19 @@ def test_coordinates_are_what_was_set(toz):
     assert (again.pose.position == toz.design.home.position).all()
 
 
+@pytest.mark.parametrize("name", ["roll", "yaw"])
+@pytest.mark.parametrize("start", [-0.1, 0.0, 0.1])
+def test_a_large_turn_goes_toward_its_end(name, start):
+    """From 0.1° to −180° the shorter turn is the other way."""
+    six_three = sessions.started(gsp.catalogue.design("workspace-6-3"))
+    state = motion.with_coordinate(six_three, name, start)
+    for end, sign in ((-89.0, -1.0), (-180.0, -1.0), (180.0, 1.0), (3000.0, 1.0)):
+        after = motion.with_coordinate(state, name, end)
+        turned = motion.coordinates(after.pose)[motion.COORDINATES.index(name)] - start
+        assert "stopped at the limit" in after.message
+        assert 1.0 < sign * turned < 89.0
+
+
 def test_axis_and_angle():
     axis, angle = motion.axis_and_angle(gsp.Pose.from_rpy([0, 0, 1], [0, 0, 30], degrees=True))
     assert (axis.round(12).tolist(), angle) == ([0, 0, 1], pytest.approx(30.0))

@@ -23,6 +23,9 @@ LEAST_MOTION = 1e-14
 # A motion is sampled at so many points, then so often again between the last two: the end before a
 # limit is exact to 32⁻⁶ of the motion.
 MOTION_SAMPLES, MOTION_ROUNDS = 33, 6
+# Turns by more are made in parts of at most so much [degrees].
+PART = 90.0
+PASSED = "passed a singular pose"
 # By what a joint may get farther beyond a limit, in sizes of the design and rad: rounding.
 MOTION_ROUNDING = 1e-12
 
@@ -66,10 +69,25 @@ def placed(state: Session, values: ArrayLike) -> Session:
 
 
 def with_coordinate(state: Session, name: str, value: float) -> Session:
-    """Return the state after a motion of one coordinate: of `COORDINATES`, angles in degrees."""
-    values = coordinates(state.pose)
-    values[COORDINATES.index(name)] = value
-    return placed(state, values)
+    """Return the state after a motion of one coordinate: of `COORDINATES`, angles in degrees.
+
+    A large turn has several parts, as the straight motion to its end may turn the other way.
+    """
+    values, number = coordinates(state.pose), COORDINATES.index(name)
+    if number < 3 or not np.isfinite(value):
+        values[number] = value
+        return placed(state, values)
+    check_angles(value)
+    passed = ""
+    for angle in np.linspace(values[number], value, int(abs(value - values[number]) / PART) + 2)[
+        1:
+    ]:
+        values[number] = angle
+        state = placed(state, values)
+        if not state.message.startswith(PASSED) and state.message:
+            return state
+        passed = passed or state.message
+    return replace(state, message=passed)
 
 
 def nudged(state: Session, name: str, sign: int) -> Session:
@@ -129,7 +147,7 @@ def toward(state: Session, target: Pose) -> Session:
             return replace(state, pose=end, message=limit)
         if reason := feasible(design, end).reason:
             return replace(state, pose=end, message=f"outside of the limits: {reason}")
-    message = "passed a singular pose" if _passes_singular(design, start, twist) else ""
+    message = PASSED if _passes_singular(design, start, twist) else ""
     return replace(state, pose=target, message=message)
 
 

@@ -11,12 +11,15 @@ from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.page.panels.contours import contour, label_place, round_levels
 from gsp.app.state import curves
+from gsp.app.state.reading import missing_words
 from gsp.errors import GspError
 from gsp.figures.gaps import gap_words
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 
 SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
+# Decimal places of the line at the present pose: two are the default, too few for small designs.
+MARK_DIGITS = 20
 BLUE, VERMILION, INK = "#0072B2", "#D55E00", "#1F2933"
 
 
@@ -37,7 +40,8 @@ def plots_panel(client: Client) -> None:
             curve = curves.curve(client.state, index.value, motion.value)
             plot = curves.map_over(client.state, index.value, plane.value)
         except GspError as error:
-            note.text = str(error)
+            words = missing_words(client.state, INDICES[index.value])
+            note.text = f"{SYMBOLS[index.value]}: {words}" if words else str(error)
             for chart, name in zip((line, field), names, strict=True):
                 _set(chart, _no_plot(), f"{name}: no plot")
             return
@@ -92,6 +96,7 @@ def curve_options(curve: curves.Curve) -> dict[str, Any]:
                 "itemStyle": {"color": BLUE},
                 "markLine": {
                     "symbol": "none",
+                    "precision": MARK_DIGITS,
                     "label": {"show": False},
                     "lineStyle": {"color": VERMILION, "width": 2, "type": "solid"},
                     "data": [{"xAxis": curve.here}],
