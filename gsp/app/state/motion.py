@@ -24,7 +24,7 @@ LEAST_MOTION = 1e-14
 # limit is exact to 32⁻⁶ of the motion.
 MOTION_SAMPLES, MOTION_ROUNDS = 33, 6
 # Turns by more are made in parts of at most so much [degrees].
-PART = 90.0
+TURN_PART = 90.0
 PASSED = "passed a singular pose"
 # By what a joint may get farther beyond a limit, in sizes of the design and rad: rounding.
 MOTION_ROUNDING = 1e-12
@@ -79,9 +79,9 @@ def with_coordinate(state: Session, name: str, value: float) -> Session:
         return placed(state, values)
     check_angles(value)
     passed = ""
-    for angle in np.linspace(values[number], value, int(abs(value - values[number]) / PART) + 2)[
-        1:
-    ]:
+    for angle in np.linspace(
+        values[number], value, int(abs(value - values[number]) / TURN_PART) + 2
+    )[1:]:
         values[number] = angle
         state = placed(state, values)
         if not state.message.startswith(PASSED) and state.message:
