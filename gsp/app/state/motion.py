@@ -78,11 +78,10 @@ def with_coordinate(state: Session, name: str, value: float) -> Session:
         values[number] = value
         return placed(state, values)
     check_angles(value)
-    passed = ""
-    for angle in np.linspace(
-        values[number], value, int(abs(value - values[number]) / TURN_PART) + 2
-    )[1:]:
-        values[number] = angle
+    turn, passed = value - values[number], ""
+    parts = int(abs(turn) / TURN_PART) + 1
+    for left in range(parts - 1, -1, -1):
+        values[number] = value - turn * left / parts
         state = placed(state, values)
         if not state.message.startswith(PASSED) and state.message:
             return state

@@ -22,7 +22,7 @@ from gsp.errors import GspError, InvalidInput, brief, expected
 
 STRUCTURES = ("position", "rotation", "design", "domain")
 # Characters of the name and version of the library that found a maximum.
-LONGEST_NAME = 200
+LONGEST_LIBRARY = 200
 # The end of the year 9999, which `datetime` can represent [s].
 LATEST = 253402300799.0
 
@@ -141,7 +141,7 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
     maximum = maximum_of(row, design_of(legs, rows), region_of(domain))
     kept = {name: row.get(name) for name in FIELDS}
     if not _is_name(kept["library"]):
-        wanted = f"a text of at most {LONGEST_NAME} characters"
+        wanted = f"a text of at most {LONGEST_LIBRARY} characters"
         raise InvalidInput(expected("library", wanted, brief(kept["library"])))
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in STRUCTURES}
     whole = {k: int(v) for k in INTEGERS if (v := getattr(maximum, k, None)) is not None}
@@ -168,7 +168,7 @@ def _is_name(value: Any) -> bool:
     """Return whether a value is a short text that can be encoded, or None."""
     if value is None:
         return True
-    if not isinstance(value, str) or len(value) > LONGEST_NAME:
+    if not isinstance(value, str) or len(value) > LONGEST_LIBRARY:
         return False
     return not any("\ud800" <= letter <= "\udfff" for letter in value)
 
