@@ -447,6 +447,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "bifurcation_point": {
         **SIX, "text": "1 1 1 1 1 1", "guess": gsp.Pose([0.0, 0.0, 13.0]), "rotation": None,
     },
+    "leg_levels": {"posture": HEXAPOD.at(HEXAPOD.home)},
     "Section.find": {"text": "0 1 0 1 0 1"},
     "Section.on_rays": {"angles": [0.1, 0.2]},
     "questions.reachable": {**SETS, "rotations": UNTURNED},

@@ -41,7 +41,7 @@ def test_the_page_in_a_browser(tmp_path):
             wanted = np.linalg.det(design.at(pose).jacobian)
             assert number(text, "det J") == pytest.approx(wanted, rel=1e-6)
             # Sliders by the keyboard alone.
-            await one.run('document.querySelector(\'[aria-label="yaw"] [tabindex="0"]\').focus()')
+            await one.run('document.querySelector(\'[aria-label="yaw"][tabindex="0"]\').focus()')
             await one.key("ArrowRight", 39)
             await one.until(f"!{FACT}.includes('{text.split()[3]}') && {FACT}")
             value = await one.run("document.querySelector('[aria-label=\"yaw value\"]').value")

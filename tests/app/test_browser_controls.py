@@ -240,7 +240,7 @@ LINES = """(() => {
   });
 })()"""
 # Whether what is in the column of notes, and below the names, is seen in the ranking.
-NOTES = """['td:nth-child(5)', '.gsp-under'].map(
+RANKING_NOTES = """['td:nth-child(5)', '.gsp-under'].map(
   (part) => [...document.querySelectorAll(`.gsp-ranking ${part}`)].some((e) => e.offsetWidth))"""
 
 
@@ -278,7 +278,7 @@ def test_numbers_are_not_broken_and_notes_have_a_place_at_the_width_of_a_phone(v
             await tab.send("Emulation.setDeviceMetricsOverride", **size)
             await tab.until(f"window.innerWidth === {width}")
             assert set(await tab.run(LINES)) == {1}
-            assert await tab.run(NOTES) == notes
+            assert await tab.run(RANKING_NOTES) == notes
             assert await tab.run("document.documentElement.scrollWidth") == width
 
     visit(work)
