@@ -141,7 +141,7 @@ class Tab:
             await asyncio.sleep(0.05)
         raise AssertionError(f"{role} {name!r}: {len(nodes)} elements; errors: {self.errors}")
 
-    async def middle(self, role, name):
+    async def middle(self, role, name, *, again=True):
         """The middle of an element that is in view, at rest, and not behind another."""
         await self.send("Page.bringToFront")
         node = await self.send("DOM.resolveNode", backendNodeId=await self.named(role, name))
@@ -149,8 +149,11 @@ class Tab:
             "Runtime.callFunctionOn", objectId=node["object"]["objectId"],
             functionDeclaration=MIDDLE, awaitPromise=True, returnByValue=True,
         )  # fmt: skip
-        assert "value" in answer.get("result", {}), f"{role} {name!r} is not at rest: {answer}"
-        return answer["result"]["value"]
+        place = answer.get("result", {}).get("value")
+        if not place and again:  # the page was laid out anew meanwhile
+            return await self.middle(role, name, again=False)
+        assert place, f"{role} {name!r} is not at rest: {answer}"
+        return place
 
     async def click(self, role, name):
         """Click with the mouse on the middle of the element of a role and a name.
