@@ -462,7 +462,7 @@ def test_indices_and_plots():
         assert line.props["aria-label"] == "λ along z: no plot"
         assert line.options == field.options == {"series": []}  # none of the index before
         page.choose("Index to plot", "condition_number_ellipsoid")
-        assert "condition_number_ellipsoid: expected ellipsoid=" in page.html
+        assert "CDN_OE: needs an operation ellipsoid" in page.html
 
     visit(work, design="workspace-6-3")
 
