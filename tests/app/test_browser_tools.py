@@ -149,10 +149,11 @@ def test_modes_workspace_and_motion(visit, tmp_path):
         await tab.click("button", "Save the motion as video")
         film = await downloaded(tmp_path, f"{SIX_THREE}.webm")
         assert film[:4] == bytes([0x1A, 0x45, 0xDF, 0xA3])  # EBML
-        # As large as the pictures of the GIF; a recorder drops those of a machine that is busy.
+        await tab.until(f"!{NOTE}.startsWith('processing')", seconds=60.0)
+        note = await tab.run(NOTE)
+        # As large as the pictures of the GIF.
         width, height, times = pictures(film)
         assert (height, width) == frames[0].shape[:2]
-        assert len(times) > 1
         assert times == sorted({*times})
         await tab.click("button", "Save the motion as a table")
         table = (await downloaded(tmp_path, f"{SIX_THREE}-motion.csv")).decode()
@@ -160,7 +161,9 @@ def test_modes_workspace_and_motion(visit, tmp_path):
         assert rows[0][:4] == ["time", "x", "y", "z"]
         assert float(rows[1][3]) == pytest.approx(design.home.position[2])
         seconds = float(rows[-1][0]) - float(rows[1][0])
-        # No longer than the motion and the second that its end is held.
-        assert times[-1] - times[0] <= 1000.0 * (seconds + 2.0) * 1.5
+        # As long as the motion at least, or the note states what a busy browser has lost.
+        whole = times[-1] - times[0] >= 1000.0 * seconds * (1.0 - 1.0 / len(frames))
+        facts = f"{len(times)} pictures to {times[-1]} ms of {seconds} s; {note}"
+        assert (whole and len(times) > 3) or "the browser was too slow" in note, facts
 
     visit(work)

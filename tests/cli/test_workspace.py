@@ -168,7 +168,13 @@ def test_a_resolution_that_is_not_reached_is_said(monkeypatch):
     monkeypatch.setitem(gsp.workspace.fixed_orientation.__kwdefaults__, "budget", 200_000)
     line = run(NAME, *given, 1e-300).stderr
     assert line.startswith("gsp: --resolution: 1e-300 is not reached: the budget ended"), line
-    assert 0.0 < float(line.split()[-1]) < 1.0
+    upper = gsp.Limits(position=[None, None, (0.0, None)])
+    plane = ([0.0, 0.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    reached = gsp.workspace.fixed_orientation(
+        catalogue.design(NAME), limits=upper, plane=plane, resolution=1e-300
+    ).resolution
+    assert 0.0 < reached < 1.0
+    assert line.split()[-1] == f"{reached:.4g}"
 
 
 KINDS = {  # and how well the measure is known without a resolution, as the help states

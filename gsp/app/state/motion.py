@@ -83,7 +83,7 @@ def with_coordinate(state: Session, name: str, value: float) -> Session:
     for left in range(parts - 1, -1, -1):
         values[number] = value - turn * left / parts
         state = placed(state, values)
-        if not state.message.startswith(PASSED) and state.message:
+        if state.message not in ("", PASSED):
             return state
         passed = passed or state.message
     return replace(state, message=passed)

@@ -54,7 +54,14 @@ def checked_entry(row: Mapping[str, Any]) -> dict[str, Any]:
         raise InvalidInput(expected("entry", f"a column {error}", "none")) from error
     except GspError:
         raise
-    except (ValueError, TypeError, OverflowError, AttributeError, IndexError) as error:
+    except (
+        ValueError,
+        TypeError,
+        LookupError,
+        OverflowError,
+        AttributeError,
+        RecursionError,
+    ) as error:
         wanted = "numbers and JSON in its columns"
         raise InvalidInput(expected("entry", wanted, "others")) from error
 
@@ -140,7 +147,7 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
         raise InvalidInput(expected("key", f"{key}, which its design has", brief(row["key"])))
     maximum = maximum_of(row, design_of(legs, rows), region_of(domain))
     kept = {name: row.get(name) for name in FIELDS}
-    if not _is_name(kept["library"]):
+    if not _names_library(kept["library"]):
         wanted = f"a text of at most {LONGEST_LIBRARY} characters"
         raise InvalidInput(expected("library", wanted, brief(kept["library"])))
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in STRUCTURES}
@@ -164,7 +171,7 @@ def _domain(value: Any) -> list[Any] | None:
     raise InvalidInput(expected("domain", wanted, brief(value)))
 
 
-def _is_name(value: Any) -> bool:
+def _names_library(value: Any) -> bool:
     """Return whether a value is a short text that can be encoded, or None."""
     if value is None:
         return True

@@ -163,16 +163,12 @@ def _mark_worst(
         number, pose = found.value, found.pose
     place = [_coordinate(sample.region, pose.reshape(1), axis) for axis in chosen]
     # Within the frame, also where poses of a search are beside all that were drawn.
-    frame = zip(place, _limits(ax), strict=True)
-    place = [np.clip(x, min(ends), max(ends)) for x, ends in frame]
+    frame = ax.get_xlim(), ax.get_ylim()
+    place = [np.clip(x, min(ends), max(ends)) for x, ends in zip(place, frame, strict=True)]
     words = f"worst found: {number:.4g}"
     look: dict[str, Any] = {"marker": "X", "markersize": 8, "linestyle": "none", "zorder": 4}
     look |= {"markerfacecolor": VERMILION, "markeredgecolor": "white", "clip_on": False}
     return list(ax.plot(*place, label=words, **look))
-
-
-def _limits(ax: Axes) -> tuple[tuple[float, float], tuple[float, float]]:
-    return ax.get_xlim(), ax.get_ylim()
 
 
 def _names(sample: IndexSample) -> tuple[str, ...]:

@@ -4,6 +4,8 @@ import { gif } from "gsp-scene/gif.js";
 const PAPER = "#f4f7f9", FRAMES_PER_SECOND = 20, LONGEST_SIDE = 720;
 // What is not encoded yet when a recorder stops is lost, so the last picture stays for so long [ms].
 const HELD = 1000;
+// How long to wait for the duration of a video [ms].
+const LONGEST_READING = 30000;
 
 export function save(blob, name) {
   const link = document.createElement("a");
@@ -55,11 +57,7 @@ export async function film(scene, kind, places, seconds, name) {
   const delay = (1000 * seconds) / places.length;
   const [blob, all] = await (kind === "gif" ? animation : video)(scene, canvas, places, scale, delay);
   save(blob, `${name}.${kind === "gif" ? "gif" : blob.type.includes("mp4") ? "mp4" : "webm"}`);
-  const has = all ? await duration(blob) : 0;
-  if (has < all) {
-    const part = `${has.toFixed(1)} s of ${all.toFixed(1)} s`;
-    throw new Error(`the browser was too slow and recorded ${part}; a GIF has all pictures`);
-  }
+  if (kind !== "gif") await checked(blob, all);
   return blob.size;
 }
 
@@ -108,15 +106,23 @@ async function video(scene, canvas, places, scale, delay) {
   return [new Blob(parts, { type: recorder.mimeType }), (motion - pause) / 1000];
 }
 
-// The duration of a video [s], which is known at its end only; infinite where it stays unknown.
+// A busy browser can lose the end of a video, and can also be too busy to read how long it is.
+async function checked(blob, all) {
+  const has = await duration(blob);
+  if (has >= all) return;
+  const part = has ? `recorded ${has.toFixed(1)} s of ${all.toFixed(1)} s` : "could not read how long the video is";
+  throw new Error(`the browser was too slow and ${part}; a GIF has all pictures`);
+}
+
+// The duration of a video [s], which is known at its end only; 0 where it stays unknown.
 function duration(blob) {
   const player = document.createElement("video");
   player.muted = true;
   player.src = URL.createObjectURL(blob);
   return new Promise((done) => {
-    const end = () => done(Number.isFinite(player.duration) ? player.duration : Infinity);
+    const end = () => done(Number.isFinite(player.duration) ? player.duration : 0);
     player.onloadedmetadata = () => (player.currentTime = 1e6);
     player.onseeked = player.onerror = end;
-    setTimeout(end, 5000);
+    setTimeout(end, LONGEST_READING);
   }).finally(() => URL.revokeObjectURL(player.src));
 }
