@@ -6,6 +6,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 # Byte code is made when a module is imported: of all files, as pip does, it takes half of the time.
+# An environment that forbids it would have each process compile all that it imports.
+export PYTHONDONTWRITEBYTECODE =
 PIP_INSTALL := $(BIN)/python -m pip install --quiet --no-compile
 
 .PHONY: rank help test compiled check-long matrix docs notebooks hooks lint bench proof pictures

@@ -14,7 +14,8 @@ from pathlib import Path
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = (
     "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    "--hide-scrollbars", "--no-first-run", "--remote-debugging-port=0", "about:blank",
+    "--disable-gpu-compositing", "--hide-scrollbars", "--no-first-run", "--remote-debugging-port=0",
+    "about:blank",
 )  # fmt: skip
 # Dots that are rendered for a pixel of the layout.
 DOTS = 0.4

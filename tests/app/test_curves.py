@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-import gsp
+import gsp.app
 from gsp.app.page.panels import contours
-from gsp.app.page.panels.plots import curve_options, map_options, plot_names
+from gsp.app.page.panels.plots import MAP_MARGINS, curve_options, map_options, plot_names
 from gsp.app.state import choices, curves, motion
 from gsp.app.state import session as sessions
 from gsp.app.state.session import started
@@ -96,6 +98,21 @@ def test_plots_are_named_by_index_and_axes():
     names = plot_names("condition_number", "z", "xz")
     assert names == ("CDN_CL along z", "CDN_CL over x and z")
     assert plot_names("control_number", "turn about x", "yz")[0] == "CTN by a turn about x"
+
+
+def test_ends_of_the_colours_of_a_map_are_stated(toz):
+    over = curves.map_over(toz, "control_number", "xy")
+    ramp = np.linspace(0.0, 1.0, over.values.size).reshape(over.values.shape)
+    words = {"all": (ramp, ["CTN\n≥ 0.98", "≤ 0.02"]), "one": (0.0 * ramp, ["CTN\n0", "0"])}
+    for values, wanted in words.values():
+        assert map_options(replace(over, values=values))["visualMap"]["text"] == wanted
+
+
+def test_lengths_of_a_map_are_as_large_along_both_axes():
+    css = (Path(gsp.app.__file__).parent / "page/style.css").read_text(encoding="utf-8")
+    narrower = int(re.search(r"height: calc\(100cqi - (\d+)px\)", css).group(1))
+    left, right, top, bottom = (MAP_MARGINS[side] for side in ("left", "right", "top", "bottom"))
+    assert left + right - narrower == top + bottom
 
 
 def test_wrong_words_are_errors(toz):

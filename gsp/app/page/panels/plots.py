@@ -20,6 +20,8 @@ from gsp.indices import INDICES
 SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
 # Decimal places of the line at the present pose: two are the default, too few for small designs.
 MARK_DIGITS = 20
+# The margins of the map [px]: style.css makes what is between them a square.
+MAP_MARGINS = {"left": 64, "right": 88, "top": 16, "bottom": 44}
 BLUE, VERMILION, INK = "#0072B2", "#D55E00", "#1F2933"
 
 
@@ -32,7 +34,9 @@ def plots_panel(client: Client) -> None:
         for part in (index, motion, plane):
             part.props("dense outlined")
     note = ui.label().classes("gsp-note").props("role=status")
-    line, field = (ui.echart(_no_plot()).classes("gsp-plot").props("role=img") for _ in range(2))
+    line = ui.echart(_no_plot()).classes("gsp-plot").props("role=img")
+    with ui.element("div").classes("gsp-map"):
+        field = ui.echart(_no_plot()).props("role=img")
 
     def draw() -> None:
         names = plot_names(index.value, motion.value, plane.value)
@@ -121,7 +125,7 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
     return {
         **_undrawable(plot.index.symbol, plot.values),
         "animation": False,
-        "grid": {"left": 64, "right": 88, "top": 16, "bottom": 44},
+        "grid": MAP_MARGINS,
         "tooltip": {},
         "xAxis": [_cells(plot.first), _coordinate(plot.first, plot.axes[0], "bottom", 28)],
         "yAxis": [_cells(plot.second), _coordinate(plot.second, plot.axes[1], "left", 48)],
@@ -133,7 +137,8 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
             "right": 0,
             "top": "middle",
             "calculable": False,
-            "text": [plot.index.symbol, ""],
+            "text": _range_words(plot.index.symbol, known, low, high),
+            "textStyle": {"lineHeight": 16},
             "precision": 3,
             "inRange": {"color": good},
         },
@@ -151,6 +156,12 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
             },
         ],
     }
+
+
+def _range_words(symbol: str, known: Array, low: float, high: float) -> list[str]:
+    """Return what stands at the upper and the lower end of the colours."""
+    above, below = "≥ " if known.max() > high else "", "≤ " if known.min() < low else ""
+    return [f"{symbol}\n{above}{tables.number(high, 3)}", f"{below}{tables.number(low, 3)}"]
 
 
 def _contours(plot: curves.Map, levels: list[float]) -> list[dict[str, Any]]:
