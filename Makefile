@@ -26,11 +26,9 @@ test:
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 # Compiled functions in the cache, in two parts while tools are installed and types are checked: each
-# takes one to two minutes on one core. Then the byte code of the tests, which in a fresh clone each
-# process of pytest would make by itself. What cannot be collected is reported by the tests.
-## compile what numba caches, and the byte code of the tests
-compiled: compiled-proofs compiled-workspaces $(VENV)/.tools
-	-$(BIN)/python -m pytest --collect-only --quiet > /dev/null
+# takes one to two minutes on one core.
+## compile what numba caches
+compiled: compiled-proofs compiled-workspaces
 
 compiled-%: $(VENV)/.installed
 	$(BIN)/python -m tests.compile $*

@@ -39,6 +39,7 @@ COLOURS = """new Promise(done => requestAnimationFrame(() => {
 
 # Where an element is, once it is in view, rests for two frames, and is what a click there hits.
 MIDDLE = """async function () {
+  this.addEventListener("click", () => (this.wasClicked = true), { capture: true, once: true });
   let before = null;
   for (const end = Date.now() + 20000; Date.now() < end;) {
     this.scrollIntoViewIfNeeded();
@@ -127,7 +128,8 @@ class Tab:
             if value:
                 return value
             await asyncio.sleep(0.05)
-        raise AssertionError(f"{script} is still {value!r}; errors: {self.errors}")
+        notes = await self.run("document.querySelector('.q-notifications')?.innerText")
+        raise AssertionError(f"{script} is still {value!r}; {notes=}; errors: {self.errors}")
 
     async def named(self, role, name, seconds=30.0):
         """The one element with a role and a name in the accessibility tree: its DOM node."""
@@ -142,30 +144,42 @@ class Tab:
             await asyncio.sleep(0.05)
         raise AssertionError(f"{role} {name!r}: {len(nodes)} elements; errors: {self.errors}")
 
-    async def middle(self, role, name, *, again=True):
-        """The middle of an element that is in view, at rest, and not behind another."""
+    async def placed(self, role, name, *, again=True):
+        """An element, and its middle while it is in view, at rest, and not behind another."""
         await self.send("Page.bringToFront")
         node = await self.send("DOM.resolveNode", backendNodeId=await self.named(role, name))
-        answer = await self.send(
-            "Runtime.callFunctionOn", objectId=node["object"]["objectId"],
-            functionDeclaration=MIDDLE, awaitPromise=True, returnByValue=True,
-        )  # fmt: skip
+        answer = await self.call(node, MIDDLE)
         place = answer.get("result", {}).get("value")
         if not place and again:  # the page was laid out anew meanwhile
-            return await self.middle(role, name, again=False)
+            return await self.placed(role, name, again=False)
         assert place, f"{role} {name!r} is not at rest: {answer}"
+        return node, place
+
+    async def call(self, node, function):
+        return await self.send(
+            "Runtime.callFunctionOn", objectId=node["object"]["objectId"],
+            functionDeclaration=function, awaitPromise=True, returnByValue=True,
+        )  # fmt: skip
+
+    async def middle(self, role, name):
+        """The middle of the element of a role and a name."""
+        _, place = await self.placed(role, name)
         return place
 
-    async def click(self, role, name):
+    async def click(self, role, name, *, again=True):
         """Click with the mouse on the middle of the element of a role and a name.
 
-        Tabs behind others are not laid out, and have no accessibility tree.
+        Tabs behind others are not laid out, and have no accessibility tree. Where the page was laid
+        out anew between the look and the click, the click missed the element, and is made again.
         """
-        x, y = await self.middle(role, name)
+        node, (x, y) = await self.placed(role, name)
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
             await self.send(
                 "Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, x=x, y=y
             )
+        answer = await self.call(node, "function () { return this.wasClicked ?? false; }")
+        if answer.get("result", {}).get("value") is False and again:
+            await self.click(role, name, again=False)
 
     async def enter(self, role, name, text):
         """Replace the text of a field, and press Enter."""

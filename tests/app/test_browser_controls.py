@@ -321,6 +321,7 @@ def test_an_accessibility_checker_finds_nothing(visit):
         await tab.named("menuitem", "Copy a link to this state")
         await check()
         await tab.key("Escape", 27)
+        await tab.still()
         # It can find something.
         await tab.run("document.querySelector('[aria-label=\"Save the picture\"]').ariaLabel = ''")
         assert [rule for rule, _ in await tab.run(AXE)] == ["button-name"]

@@ -20,10 +20,11 @@ from gsp.published.quantities import PAPERS, common, dimensions
 from tests import campaign
 
 NAMES = catalogue.design_names()
+EVERY = published.select()
 RECORDS = {
     # Those of dimensions first, as they are fast.
     name: sorted(
-        (r for r in published.select() if r.arguments.get("design") == name),
+        (r for r in EVERY if r.arguments.get("design") == name),
         key=lambda record: record.quantity not in dimensions.QUANTITIES,
     )
     for name in NAMES
