@@ -33,7 +33,9 @@ SIX_THREE, OCTAHEDRAL = "workspace-6-3", "lee-2000-3-3"
 
 @pytest.fixture(scope="module")
 def study():
-    return study_of(gsp.catalogue.design(SIX_THREE), None, None, None)
+    """Of a design whose texts are markup."""
+    texts = {"name": "<x-name>", "unit": "<x-unit>", "source": "<x-source>"}
+    return study_of(gsp.catalogue.design(SIX_THREE).replace(**texts), None, None, None)
 
 
 @pytest.fixture(scope="module")
@@ -153,6 +155,13 @@ def test_names_are_no_markup(monkeypatch):
     assert "<b>" not in html
     assert html.count("<section") == 2
     assert "&lt;b&gt;@@sections@@" in html
+
+
+def test_texts_of_a_design_are_no_markup(study):
+    seen = "".join(make(study) for _, make in page.SECTIONS)
+    assert "<x-" not in seen
+    assert seen.count("&lt;x-unit&gt;") > 10
+    assert "&lt;x-source&gt;" in seen
 
 
 def test_a_task_is_proven_and_compared():

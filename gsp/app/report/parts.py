@@ -85,7 +85,7 @@ def jacobian(study: Study) -> str:
     parts.append(wide(tables.matrix(matrix(state, PLAIN), state, PLAIN)))
     unit = powers(study.reading.index("manipulability").unit)
     if np.isfinite(study.reading.determinant):
-        parts.append(f"<p>det J = {measured(study.reading.determinant, unit, 7)}</p>")
+        parts.append(f"<p>det J = {escape(measured(study.reading.determinant, unit, 7))}</p>")
     parts.append("<h3>Dimensionless, by the characteristic length</h3>")
     parts.append(wide(tables.matrix(matrix(state, HOMOGENEOUS), state, HOMOGENEOUS)))
     if state.design.between_points:
@@ -115,9 +115,10 @@ def _index(study: Study, one: IndexReading) -> str:
     index, place = one.index, study.places[one.index.name]
     name, meaning = escape(index.name.replace("_", " ")), escape(MEANINGS[index.name])
     why = f'<br><span class="why">{escape(one.reason)}</span>' if one.reason else ""
+    value = escape(measured(one.value, powers(one.unit), 5))
     return (
         f'<tr><th scope="row">{escape(index.symbol)} <span class="why">{name}: {meaning}</span>'
-        f'{why}</th><td class="n">{measured(one.value, powers(one.unit), 5)}</td>'
+        f'{why}</th><td class="n">{value}</td>'
         f"<td>{index.better}, {number(index.best, 4)}</td><td>{_verdict(place)}</td></tr>"
     )
 

@@ -29,7 +29,7 @@ def workspace(study: Study) -> str:
     squared, cubed = (base and f"{base}{power}" for power in "²³")
     for name, _ in PLANES:
         low, high = study.sections[name].area
-        area = f"area {bracket(low, high)} {squared}".rstrip()
+        area = escape(f"area {bracket(low, high)} {squared}".rstrip())
         shown, why = attempted(lambda n=name: pictures.of_section(study, n))
         parts.append(f"<figure>{shown or escape(why)}<figcaption>{area}</figcaption></figure>")
     low, high = study.space.volume
@@ -144,7 +144,7 @@ def singularity(study: Study) -> str:
     return (
         listed(facts)
         + "<p class=note>The distance of two poses is sqrt(|p − p′|² + (L θ)²), with the angle θ "
-        f"between them and L = {measured(study.length, unit, 4)}.</p>"
+        f"between them and L = {escape(measured(study.length, unit, 4))}.</p>"
     )
 
 
@@ -171,7 +171,8 @@ def statics(study: Study) -> str:
     ]
     heads = ("actuator", "load along −x", "load along −y", "load along −z")
     greatest = study.reading.index("greatest_force")
-    torque = f" In torques, per {design.unit or 'unit of length'}." if design.angular.any() else ""
+    unit = escape(design.unit or "unit of length")
+    torque = f" In torques, per {unit}." if design.angular.any() else ""
     text = wide(table(heads, cells(rows)))
     text += (
         "<p class=note>Forces that balance a load of 1 at the platform origin; of 500 N they are "
