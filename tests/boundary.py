@@ -375,6 +375,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "plots.fronts.front": {
         "table": FRONT, "objectives": {"score": "higher", "feasible": "higher"}, "ax": None,
     },
+    "plots.explorers.explorer": {
+        "table": FRONT, "objectives": {"score": "higher", "feasible": "higher"},
+        "designs": None, "columns": ["score", "feasible"], "by": "score", "pose": None, "most": 5,
+    },
     "plots.fronts.parallel": {
         "table": FRONT, "columns": ["score", "feasible"], "by": "score", "ax": None,
     },

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import gsp
+from gsp.app.scene.pages import PageFigure
 from website import designs, gallery, indices, navigation, notebooks, reference
 from website.mathml import CODE
 
@@ -113,3 +114,15 @@ def test_script_of_the_gallery_draws_its_picture(script, tmp_path, monkeypatch):
     plt.close("all")
     assert (tmp_path / f"{script}.png").stat().st_size > 5_000
     assert f"(#{script})" in gallery.text()
+
+
+def test_a_page_that_a_notebook_shows_is_a_file_of_the_site(tmp_path):
+    shown = PageFigure(title='"a" & b', html="<p>1 < 2\n// kept as it is</p>")
+    output = {"data": {"text/html": shown._repr_html_()}}
+    cells = [
+        {"cell_type": "markdown", "source": ["# Heading"]},
+        {"cell_type": "code", "source": ["shown"], "outputs": [output]},
+    ]
+    text, files = notebooks.convert("01-some", {"cells": cells}, tmp_path)
+    assert '[The page: "a" & b](01-some-1-0.html)' in text
+    assert files["notebooks/01-some-1-0.html"].read_text(encoding="utf-8") == shown.html

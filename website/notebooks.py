@@ -7,6 +7,7 @@ import json
 import os
 import re
 import tempfile
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ FOLDER = ROOT / "notebooks"
 NOTEBOOKS = tuple(sorted(path.stem for path in FOLDER.glob("*.ipynb")))
 OVERVIEW = "notebooks/index.md"
 SECONDS = 600
+# A page that a notebook shows in a frame.
+FRAME = re.compile(r'<iframe title="(?P<title>[^"]*)" srcdoc="(?P<page>[^"]*)"')
 ANSI = re.compile(r"\x1b\[[0-9;]*m")
 
 
@@ -90,6 +93,11 @@ def convert(name: str, notebook: dict[str, Any], folder: Path) -> tuple[str, dic
                 file.write_bytes(base64.b64decode(data["image/png"]))
                 pictures[f"notebooks/{file.name}"] = file
                 parts.append(f"![Figure made by the code above]({file.name})")
+            elif framed := FRAME.match("".join(data.get("text/html", ""))):
+                file = folder / f"{name}-{i}-{j}.html"
+                file.write_text(unescape(framed["page"]), encoding="utf-8")
+                pictures[f"notebooks/{file.name}"] = file
+                parts.append(f"[The page: {unescape(framed['title'])}]({file.name})")
             else:
                 parts.append(shown(output))
     parts.insert(1, f"[Download the notebook]({name}.ipynb)")

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def undrawable_words(symbol: str, values: NDArray[np.float64]) -> str:
+def undrawable_words(symbol: str, values: NDArray[np.float64], each: str = "pose") -> str:
     """Return why there is nothing to draw: each value is 0, infinite or undefined.
 
     Parameters
@@ -15,6 +15,8 @@ def undrawable_words(symbol: str, values: NDArray[np.float64]) -> str:
         Of the index.
     values : array
         Without one that is finite and not 0, or such an axis has no place for them.
+    each : str
+        What has a value.
 
     Examples
     --------
@@ -25,10 +27,10 @@ def undrawable_words(symbol: str, values: NDArray[np.float64]) -> str:
     """
     kinds = {"0": values == 0.0, "infinite": np.isinf(values), "undefined": np.isnan(values)}
     states = " or ".join(state for state, where in kinds.items() if where.any())
-    return f"{symbol} is {states} at every pose"
+    return f"{symbol} is {states} at every {each}"
 
 
-def gap_words(symbol: str, values: NDArray[np.float64]) -> str:
+def gap_words(symbol: str, values: NDArray[np.float64], each: str = "pose") -> str:
     """Return at how many poses an index is not finite, "" where it is so at none.
 
     Parameters
@@ -36,6 +38,8 @@ def gap_words(symbol: str, values: NDArray[np.float64]) -> str:
     symbol : str
         Of the index.
     values : array
+    each : str
+        What has a value.
 
     Examples
     --------
@@ -46,6 +50,6 @@ def gap_words(symbol: str, values: NDArray[np.float64]) -> str:
     """
     counts = {"infinite": np.isinf(values).sum(), "undefined": np.isnan(values).sum()}
     if sum(counts.values()) == values.size:
-        return undrawable_words(symbol, values)
+        return undrawable_words(symbol, values, each)
     parts = " and ".join(f"{state} at {count}" for state, count in counts.items() if count)
-    return f"{symbol} is {parts} of {values.size} poses" if parts else ""
+    return f"{symbol} is {parts} of {values.size} {each}s" if parts else ""

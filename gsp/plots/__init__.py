@@ -2,6 +2,7 @@
 
 from gsp.plots import workspace
 from gsp.plots.common.style import save
+from gsp.plots.explorers import explorer
 from gsp.plots.films import Film
 from gsp.plots.fronts import front, parallel
 from gsp.plots.indices import contours, screw_axes, screws
@@ -19,6 +20,7 @@ __all__ = [
     "animate",
     "assembly_modes",
     "contours",
+    "explorer",
     "front",
     "mechanism",
     "over_plane",

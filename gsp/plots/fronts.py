@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from gsp import arguments
 from gsp.checks import check_items
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
 # Marks of an axis: heights in [0, 1] and texts.
 Marks = list[tuple[float, str]]
+# Places of rows in a table.
+Places = NDArray[np.intp]
 
 FRONT_COLOUR, KNEE_COLOUR = "#0072b2", "#d55e00"
 # More columns than this do not fit side by side.
@@ -70,30 +74,48 @@ def front(table: pd.DataFrame, objectives: Objectives, ax: Axes | None = None) -
     sides = better_sides(table, objectives)
     if len(sides) != 2:
         raise InvalidInput(expected("objectives", "two columns", len(sides)))
-    merits = merits_of(table, objectives)
-    there = np.flatnonzero(np.isfinite(merits).all(axis=1))
-    if not there.size:
-        raise InvalidInput(expected("table", "a row with both objectives", "none"))
-    shown = table.iloc[there]
-    kept = nondominated(merits[there])
-    order = np.argsort(merits[there][kept][:, 0], kind="stable")
-    ends = [column(shown, name) for name in sides]
-    best = shown.iloc[np.flatnonzero(kept)]
+    kept, place = front_rows(table, objectives)
+    ends = [column(table, name) for name in sides]
+    there = np.isfinite(ends).all(axis=0)
     with style():
         ax = axes_or_new(ax, 6.4, 4.8)
-        ax.scatter(ends[0], ends[1], s=12, color=GREY, label="designs", zorder=1)
-        along = [end[kept][order] for end in ends]
+        ax.scatter(ends[0][there], ends[1][there], s=12, color=GREY, label="designs", zorder=1)
+        along = [end[kept] for end in ends]
         ax.plot(*along, "o-", color=FRONT_COLOUR, markersize=4, linewidth=1, label="front")
-        place = knee(best.reset_index(drop=True), objectives)
-        at = [end[kept][place] for end in ends]
-        ax.plot(*at, "D", color=KNEE_COLOUR, markersize=7, label="knee", zorder=3)
-        ax.set_xscale("log" if _is_log(ends[0]) else "linear")
-        ax.set_yscale("log" if _is_log(ends[1]) else "linear")
+        ax.plot(
+            *(end[place] for end in ends),
+            "D",
+            color=KNEE_COLOUR,
+            markersize=7,
+            label="knee",
+            zorder=3,
+        )
+        ax.set_xscale("log" if is_log(ends[0][there]) else "linear")
+        ax.set_yscale("log" if is_log(ends[1][there]) else "linear")
         for axis, (name, side) in zip((ax.xaxis, ax.yaxis), sides.items(), strict=True):
             axis.set_inverted(side == "lower")
             axis.set_label_text(f"{label_of(name)} {ARROWS[side]}")
         ax.legend(loc="best", handletextpad=0.3)
         return ax
+
+
+def front_rows(table: pd.DataFrame, objectives: Objectives) -> tuple[Places, int]:
+    """Return the places of the rows of a front, from the worst first objective on, and of its knee.
+
+    Rows with an objective that is not finite have no place in a picture, and do not count.
+
+    Raises
+    ------
+    InvalidInput
+        As `gsp.exploration.pareto`, or if no row has all objectives.
+    """
+    merits = merits_of(table, objectives)
+    there = np.flatnonzero(np.isfinite(merits).all(axis=1))
+    if not there.size:
+        raise InvalidInput(expected("table", "a row with both objectives", "none"))
+    kept = there[nondominated(merits[there])]
+    place = knee(table.iloc[kept].reset_index(drop=True), objectives)
+    return kept[np.argsort(merits[kept, 0], kind="stable")], int(kept[place])
 
 
 def parallel(
@@ -127,6 +149,43 @@ def parallel(
     MissingSoftware
         Without matplotlib.
     """
+    lines = parallel_lines(table, columns, by)
+    shades = column(table, by)[lines.rows]
+    with style():
+        ax = axes_or_new(ax, COLUMN_WIDTH * (len(lines.names) + 1), 4.0)
+        _draw(ax, lines.heights, shades, by, lines.names, lines.marks)
+        return ax
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ParallelLines:
+    """Lines of parallel coordinates.
+
+    Attributes
+    ----------
+    names : list of str
+        Of the columns.
+    rows : (m,) array of int
+        Places of the rows that have a line, the best last.
+    heights : (m, number of columns) array
+        In [0, 1], better values above.
+    marks : list of lists of (height, text), one per column
+    """
+
+    names: list[str]
+    rows: Places
+    heights: Array
+    marks: list[Marks]
+
+
+def parallel_lines(table: pd.DataFrame, columns: Sequence[str], by: str) -> ParallelLines:
+    """Return the lines of `parallel`.
+
+    Raises
+    ------
+    InvalidInput
+        See `parallel`.
+    """
     check_frame("table", table)
     names = [
         arguments.text("columns", name)
@@ -143,10 +202,8 @@ def parallel(
         raise InvalidInput(expected("table", "a row with numbers in all columns", "none"))
     better = -1.0 if known_side(by) == "lower" else 1.0
     there = there[np.argsort(better * shades[there], kind="stable")]
-    with style():
-        ax = axes_or_new(ax, COLUMN_WIDTH * (len(names) + 1), 4.0)
-        _draw(ax, heights[there], shades[there], by, names, [axis[1] for axis in axes])
-        return ax
+    marks = [axis[1] for axis in axes]
+    return ParallelLines(names=names, rows=there, heights=heights[there], marks=marks)
 
 
 def _draw(
@@ -167,7 +224,7 @@ def _draw(
         ax.axvline(place, color="black", linewidth=0.8, zorder=3)
         for height, text in marks:
             ax.annotate(
-                text, (place, height), (3, 0), textcoords="offset points", fontsize=7,
+                plain(text), (place, height), (3, 0), textcoords="offset points", fontsize=7,
                 va="center", zorder=4,
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8},
             )  # fmt: skip
@@ -206,7 +263,7 @@ def _of_texts(name: str, values: Sequence[str]) -> tuple[Array, Marks]:
         raise InvalidInput(expected(f"column {name}", wanted, len(texts)))
     places = np.linspace(0.0, 1.0, len(texts)).tolist()
     heights = dict(zip(texts, places, strict=True))
-    marks = [(height, plain(text)) for text, height in heights.items()]
+    marks = [(height, text) for text, height in heights.items()]
     return np.array([heights[value] for value in values]), marks
 
 
@@ -214,13 +271,13 @@ def _of_numbers(numbers: Array) -> tuple[Array, Marks]:
     finite = numbers[np.isfinite(numbers)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     marks = [(0.0, f"{low:.4g}"), (1.0, f"{high:.4g}")]
-    if _is_log(finite):
+    if is_log(finite):
         numbers, low, high = np.log(numbers), float(np.log(low)), float(np.log(high))
     return np.asarray((numbers - low) / (high - low or 1.0)), marks
 
 
-def _is_log(values: Array) -> bool:
-    """Whether finite numbers have a logarithmic axis: all are positive, and they span much."""
+def is_log(values: Array) -> bool:
+    """Return whether finite numbers get a logarithmic axis: all are positive, and span much."""
     return bool(values.size and values.min() > 0.0 and spans_much(values))
 
 
