@@ -43,10 +43,55 @@ def test_a_curve_has_the_values_of_postures(toz, where):
 def test_the_line_at_the_present_pose_keeps_its_digits(size):
     """ECharts rounds the place of a line to its `precision`, by default to two decimals."""
     state = started(gsp.catalogue.design("dehaeze-general").scaled(size))
-    mark = curve_options(curves.curve(state, "control_number", "z"))["series"][0]["markLine"]
+    options = curve_options(curves.curve(state, "control_number", "z"))
+    mark = options["series"][0]["markLine"]
     (place,) = mark["data"]
-    drawn = float(f"{place['xAxis']:.{mark['precision']}f}")
+    drawn = float(f"{place['xAxis']:.{mark['precision']}f}") * factor_of(options["xAxis"]["name"])
     assert drawn == pytest.approx(state.pose.position[2], rel=1e-9)
+
+
+def factor_of(label):
+    """The power of ten in the label of an axis."""
+    found = re.search(r"\[10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", label)
+    return (
+        10.0 ** int(found[1].translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
+        if found
+        else 1.0
+    )
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_axes_of_plots_have_the_values_whatever_the_unit(size):
+    state = started(gsp.catalogue.design("dehaeze-general").scaled(size))
+    along = curves.curve(state, "manipulability", "z")
+    options = curve_options(along)
+    drawn = np.array(options["series"][0]["data"])
+    axes = options["xAxis"]["name"], options["yAxis"]["name"]
+    for found, wanted, label in zip(drawn.T, (along.places, along.values), axes, strict=True):
+        assert found * factor_of(label) == pytest.approx(wanted, rel=1e-4)
+        assert 1e-3 <= np.abs(found).max() < 1e5
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e4])
+def test_contours_are_where_their_values_are(toz, shift):
+    """Also far from the origin of the frames, in units of the grid."""
+    away = np.array([shift, -2.0 * shift, 0.0])
+    moved = toz.design.replace(
+        base_points=toz.design.base_points + away,
+        home=gsp.Pose(toz.pose.position + away, toz.pose.rotation),
+    )
+    plain, far = (
+        curves.map_over(started(one), "manipulability", "xy") for one in (toz.design, moved)
+    )
+    lines = []
+    for found in (plain, far):
+        options = map_options(found)
+        across, up = (options[axis][1]["name"] for axis in ("xAxis", "yAxis"))
+        factors = factor_of(across), factor_of(up)
+        points = np.concatenate([line["coords"] for line in options["series"][1]["data"]])
+        lines.append(points * factors - [found.first[0], found.second[0]])
+    step = plain.first[1] - plain.first[0]
+    assert np.abs(lines[1] - lines[0]).max() < 0.01 * step
 
 
 @pytest.mark.parametrize("axes", curves.PLANES)
@@ -103,8 +148,12 @@ def test_plots_are_named_by_index_and_axes():
 def test_ends_of_the_colours_of_a_map_are_stated(toz):
     over = curves.map_over(toz, "control_number", "xy")
     ramp = np.linspace(0.0, 1.0, over.values.size).reshape(over.values.shape)
-    words = {"all": (ramp, ["CTN\n≥ 0.98", "≤ 0.02"]), "one": (0.0 * ramp, ["CTN\n0", "0"])}
-    for values, wanted in words.values():
+    cases = (
+        (ramp, ["CTN\n≥ 0.98", "≤ 0.02"]),
+        (0.0 * ramp, ["CTN\n0", "0"]),
+        (3e-20 * ramp, ["CTN\n[10⁻²⁰]\n≥ 2.94", "≤ 0.06"]),
+    )
+    for values, wanted in cases:
         assert map_options(replace(over, values=values))["visualMap"]["text"] == wanted
 
 

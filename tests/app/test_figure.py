@@ -71,6 +71,9 @@ def test_what_cannot_be_shown(tmp_path):
         design.show([0, 0, 1])
     with pytest.raises(gsp.GspError, match=r"ends in \.html"):
         design.show().write(tmp_path / "scene.png")
+    for no_path in (None, 5, b"x.html", "", "a\0.html"):
+        with pytest.raises(gsp.GspError, match="path: expected"):
+            design.show().write(no_path)
     design.show().write(tmp_path / "scene.html")
     with pytest.raises(gsp.GspError, match="exists"):
         design.show().write(tmp_path / "scene.html")

@@ -7,10 +7,11 @@ import pytest
 
 import gsp
 from gsp.app.page.panels.modes import unable, words
-from gsp.app.scene.drawing import film, merit_colour
+from gsp.app.scene.drawing import drawing, film, merit_colour, placement
 from gsp.app.scene.modes import ghosts, modes_of, taken
 from gsp.app.scene.region import region_of, surface
 from gsp.app.state import motion, recording
+from gsp.app.state.reading import read
 from gsp.app.state.recording import Recording, from_table
 from gsp.app.state.session import started, with_strokes
 
@@ -43,6 +44,37 @@ def test_modes_are_those_of_the_library_and_one_is_the_present_pose():
     assert jumped.message == f"assembly mode {other + 1} of 8"
     # A pose that is no mode of them is at none.
     assert found.present(motion.nudged(state, "yaw", 1)) is None
+
+
+@pytest.mark.parametrize(
+    ("base", "platform"), [(0.0, 0.0), (2e4, 0.0), (0.0, 2e3), (3.0, 1e4)], ids=str
+)
+def test_what_is_drawn_is_right_in_shifted_frames(base, platform):
+    """To a ten thousandth of the size, in the numbers of single precision of a graphics card."""
+    plain = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    base, platform = base * np.array([1.0, -2.0, 0.5]), platform * np.array([0.3, 1.0, -0.6])
+    turned = np.asarray(gsp.Pose.from_rpy([0, 0, 0], [0.2, -0.1, 0.4]).rotation)
+    design = plain.replace(
+        base_points=plain.base_points + base,
+        platform_points=plain.platform_points + platform,
+        home=gsp.Pose(plain.home.position + base - turned @ platform, turned),
+    )
+    state = motion.nudged(started(design), "x", 1)
+    shown = drawing(state)
+    place = placement(state, read(state), "#FFFFFF")
+    # "origin" and the size are numbers of the page in double precision.
+    origin = np.array(shown["origin"])
+    feet = np.array(place["feet"]).reshape(6, 2, 3)
+    segments = design.at(state.pose).segments
+    assert feet[:, 0] + origin == pytest.approx(segments.base_feet, abs=1e-4)
+    assert feet[:, 1] + origin == pytest.approx(segments.platform_feet, abs=1e-4)
+    assert np.abs(np.float32(feet) - feet).max() < 1e-4
+    rotation = np.array(place["rotation"]).reshape(3, 3)
+    corners = np.array([leg["platform"] for leg in shown["legs"]]) @ rotation.T
+    assert corners + place["position"] == pytest.approx(feet[:, 1], abs=2e-4)
+    before = placement(started(design), read(started(design)), "#FFFFFF")
+    moved = np.subtract(place["position"], before["position"])
+    assert moved == pytest.approx(state.pose.position - design.home.position, abs=1e-4)
 
 
 def test_ghosts_are_the_other_modes():
@@ -126,7 +158,7 @@ def test_region_is_bounded_by_the_strokes(name, low, high):
 def test_region_without_limits_or_poses_gives_a_reason():
     with pytest.raises(gsp.GspError, match="limits of the joints"):
         region_of(state_of("lee-2000-3-3"))
-    with pytest.raises(gsp.GspError, match="some feasible position"):
+    with pytest.raises(gsp.GspError, match="feasible positions at the present rotation"):
         region_of(with_strokes(state_of(SIX_THREE), 1.0, 2.0))
 
 
@@ -216,6 +248,8 @@ HEAD = "x,y,z,angle_1,angle_2,angle_3\n"
         ("d1,d2,d3,d4,d5,d6\n1,1,1,1,1,1\n9,9,9,9,9,1\n", "lead on from the present pose"),
         (HEAD + "0,0,1,0,0,0\n" * (recording.MOST_SAMPLES + 1), "2 to 2000 rows"),
         ("x" * (recording.LARGEST_TABLE + 1), "at most 400000 letters"),
+        (HEAD + "0,0,1,0,0," + "1" * 140_000 + "\n0,0,1,0,0,0\n", "commas between cells"),
+        ("x," + HEAD + "9,0,0,1,0,0,0\n" * 2, "column 'x': expected one of its name"),
     ],
     ids=lambda value: str(value)[:24],
 )

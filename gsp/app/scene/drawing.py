@@ -15,8 +15,10 @@ from gsp.model.design import Design
 from gsp.plots.common.bodies import hull
 from gsp.plots.common.style import LEGS
 
-# Significant digits of what is sent; a screen has four.
+# Digits of what is sent, of the size of the design; a screen has four.
 DRAWING_DIGITS = 5
+# A base is far from its frame beyond so many sizes: then places are sent from its middle.
+FAR_FRAME = 10.0
 # An anchor is far if its distance from the median of all is more than so many median distances.
 FAR_ANCHOR = 5.0
 # Pitch of a screw [share of the size] that is rounding.
@@ -26,16 +28,18 @@ NO_PITCH = 1e-12
 def drawing(state: Session) -> dict[str, Any]:
     """Return what is drawn of a design: bodies, kinds of legs and joints, labels, ellipsoid.
 
-    Points of the base are in base axes, those of the platform in platform axes; one triangle is
-    three numbers of points.
+    Points of the base are in base axes, from "origin" on; those of the platform in platform axes.
+    One triangle is three numbers of points.
     """
-    design = _with_near_anchors(state.design)
+    design, origin = _with_near_anchors(state.design), origin_of(state.design)
     size = _extent(design, state.pose)
     names = iter(design.joint_names)
+    base = design.base_points - origin
     return {
         "size": size,
         "unit": design.unit,
-        "base": _body(design.base_points, size),
+        "origin": origin.tolist(),
+        "base": _body(base, size),
         "platform": _body(design.platform_points, size),
         "legs": [
             {
@@ -44,8 +48,8 @@ def drawing(state: Session) -> dict[str, Any]:
                 "colour": LEGS[leg.name],
                 "label": str(i + 1),
                 "joints": ", ".join(next(names) for _ in leg.constraints),
-                "base": _rounded(design.base_points[i]),
-                "platform": _rounded(design.platform_points[i]),
+                "base": rounded(base[i], size),
+                "platform": rounded(design.platform_points[i], size),
                 "base_line": _line(design.base_directions[i], leg.base_line),
                 "platform_line": _line(design.platform_directions[i], leg.platform_line),
             }
@@ -69,34 +73,49 @@ def placement(state: Session, reading: Reading, colour: str) -> dict[str, Any]:
     -------
     dict
         "position", "rotation" (by rows), "feet" (six numbers per leg in base axes, None where
-        undefined), "colour", "screw" (point, direction and pitch, or None).
+        undefined), "colour", "screw" (point, direction and pitch, or None). Places are from the
+        origin of the drawing on.
     """
     screw = None
     if reading.screw is not None:
         point, axis, pitch = reading.screw
-        pitch = pitch if abs(pitch) > NO_PITCH * state.design.rms_radius else 0.0
-        screw = [*_rounded(point), *_rounded(axis), *_rounded([pitch])]
+        size = size_of(state.design)
+        pitch = pitch if abs(pitch) > NO_PITCH * size else 0.0
+        place = rounded(point - origin_of(state.design), size)
+        screw = [*place, *rounded(axis), float(f"{pitch:.{DRAWING_DIGITS}g}")]
     (numbers,) = pose_numbers(state.design, state.pose)
     return {**numbers, "colour": colour, "screw": screw}
 
 
 def pose_numbers(design: Design, poses: Pose) -> list[dict[str, Any]]:
     """Return "position", "rotation" and "feet" of `placement` for each of several poses."""
-    segments = design.at(poses).segments
-    feet = np.concatenate((segments.base_feet, segments.platform_feet), axis=-1)
+    segments, origin, size = design.at(poses).segments, origin_of(design), size_of(design)
+    ends = (segments.base_feet - origin, segments.platform_feet - origin)
+    feet = np.concatenate(ends, axis=-1)
+    arm = max(1.0, float(norm(design.platform_points).max()) / size)
     return [
         {
-            "position": _rounded(position),
-            "rotation": _rounded(rotation.ravel()),
-            "feet": [None if np.isnan(foot).any() else _rounded(foot) for foot in ends],
+            "position": rounded(position, size),
+            "rotation": rounded(rotation.ravel(), 1.0 / arm),
+            "feet": [None if np.isnan(foot).any() else rounded(foot, size) for foot in ends],
         }
         for position, rotation, ends in zip(
-            poses.position.reshape(-1, 3),
+            (poses.position - origin).reshape(-1, 3),
             poses.rotation.reshape(-1, 3, 3),
             feet.reshape(-1, *feet.shape[-2:]),
             strict=True,
         )
     ]
+
+
+def origin_of(design: Design) -> Array:
+    """Return the point from which places are sent: of bases far from their frame the middle.
+
+    A graphics processor has seven digits.
+    """
+    middle = np.median(design.base_points, axis=0)
+    far = float(norm(middle)) > FAR_FRAME * size_of(design)
+    return middle if far else np.zeros(3)
 
 
 def film(state: Session, poses: Pose, index: str) -> list[dict[str, Any]]:
@@ -146,8 +165,8 @@ def _extent(design: Design, pose: Pose) -> float:
 def _body(points: Array, size: float) -> dict[str, Any]:
     """Return the convex hull of anchors: corners and edges; one that is a point has none."""
     faces, edges = hull(points, size)
-    corners = [_rounded(p) for face in faces for p in _triangles(face)]
-    return {"faces": corners, "edges": [_rounded(p) for edge in edges for p in edge]}
+    corners = [rounded(p, size) for face in faces for p in _triangles(face)]
+    return {"faces": corners, "edges": [rounded(p, size) for edge in edges for p in edge]}
 
 
 def _triangles(face: Array) -> list[Array]:
@@ -159,21 +178,27 @@ def _triangles(face: Array) -> list[Array]:
 
 
 def _line(direction: Array, needed: bool) -> list[float] | None:
-    return _rounded(direction) if needed else None
+    return rounded(direction) if needed else None
 
 
 def _ellipsoid(design: Design) -> dict[str, Any] | None:
     own = design.ellipsoid
     if own is None:
         return None
+    size = float(np.max(own.semi_axes))
     return {
-        "semi_axes": _rounded(own.semi_axes),
-        "center": _rounded(own.center),
-        "rotation": _rounded(own.rotation.ravel()),
+        "semi_axes": rounded(own.semi_axes, size),
+        "center": rounded(own.center, size),
+        "rotation": rounded(own.rotation.ravel()),
     }
 
 
-def _rounded(values: ArrayLike) -> list[float]:
-    """Return numbers with few digits; zero has no sign."""
+def rounded(values: ArrayLike, size: float = 1.0) -> list[float]:
+    """Return numbers with the digits that a drawing of a size needs; zero has no sign.
+
+    >>> rounded([0.123456789, 12345.6789, -1e-9]), rounded([12345.6789], 1e4)
+    ([0.12346, 12345.6789, 0.0], [12345.7])
+    """
+    places = DRAWING_DIGITS - int(np.floor(np.log10(size)))
     flat = np.asarray(values, dtype=np.float64).ravel()
-    return [float(f"{x:.{DRAWING_DIGITS}g}") + 0.0 for x in flat]
+    return [round(x, places) + 0.0 for x in flat.tolist()]

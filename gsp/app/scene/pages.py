@@ -15,6 +15,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, ClassVar
 
+from gsp import arguments
 from gsp.errors import InvalidInput, expected
 from gsp.files.writing import write_text
 
@@ -66,9 +67,10 @@ class PageFigure:
         Raises
         ------
         InvalidInput
-            If the name does not end in .html.
+            If it is no path whose name ends in .html.
         FileExists
         """
+        path, overwrite = arguments.path("path", path), arguments.flag("overwrite", overwrite)
         if Path(path).suffix.lower() != ".html":
             raise InvalidInput(expected("path", "a name that ends in .html", repr(str(path))))
         write_text(path, self.html, overwrite=overwrite)

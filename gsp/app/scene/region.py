@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from gsp.app.scene.drawing import origin_of, rounded
 from gsp.app.state.motion import has_strokes
 from gsp.app.state.session import Session
 from gsp.errors import InvalidInput, expected
@@ -24,8 +25,6 @@ MARGIN_STEPS = 2
 # Half the side of the first grid, around the first pose, in sizes of the design, where no distance
 # of two points bounds the position.
 UNBOUNDED_REACH = 1.5
-# Significant digits of the corners that are sent.
-CORNER_DIGITS = 4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -34,6 +33,8 @@ class Surface:
 
     Attributes
     ----------
+    origin : (3,) array [unit of the design]
+        Of the drawing, from which the scene gets places.
     vertices : (n, 3) array [unit of the design]
         In base axes.
     faces : (m, 3) array of int
@@ -45,6 +46,7 @@ class Surface:
         somewhat smaller, as edges of the region are cut off between the points of the grid.
     """
 
+    origin: Array
     vertices: Array
     faces: NDArray[np.int64]
     cut: bool
@@ -53,9 +55,9 @@ class Surface:
 
     def numbers(self) -> dict[str, Any]:
         """Return what the scene gets: coordinates, and numbers of corners."""
-        flat = self.vertices.ravel()
+        size = float(np.ptp(self.vertices, axis=0).max())
         return {
-            "vertices": [float(f"{x:.{CORNER_DIGITS}g}") for x in flat],
+            "vertices": rounded(self.vertices - self.origin, size),
             "faces": self.faces.ravel().tolist(),
         }
 
@@ -87,7 +89,9 @@ def region_of(state: Session) -> Surface:
             low, high = state.pose.position - reach, state.pose.position + reach
             left, part = _sampled(state, low, high, points)
         if not part.any():
-            raise InvalidInput(expected("limits", "some feasible position", "none is found"))
+            raise InvalidInput(
+                expected("limits", "feasible positions at the present rotation", "none")
+            )
         step = (high - low) / (points - 1)
         found = np.argwhere(part)
         cut |= bool(number == 0 and ((found == 0) | (found == points - 1)).any())
@@ -104,6 +108,7 @@ def region_of(state: Session) -> Surface:
     inside = volume_in(vertices, faces)
     missing = (inside - volume_in(*_closed(left[::2, ::2, ::2], first, 2.0 * step))) / 3.0
     return Surface(
+        origin=origin_of(state.design),
         vertices=vertices,
         faces=faces,
         cut=cut,
@@ -148,7 +153,7 @@ def _bounds(state: Session) -> tuple[Array, Array]:
         low = np.max([centre - most for centre, most in shells], axis=0)
         high = np.min([centre + most for centre, most in shells], axis=0)
     if (low >= high).any():
-        raise InvalidInput(expected("limits", "some feasible position", "none"))
+        raise InvalidInput(expected("limits", "feasible positions at the present rotation", "none"))
     return low, high
 
 

@@ -10,6 +10,7 @@ from io import StringIO
 import numpy as np
 
 from gsp.app.state.session import FARTHEST_SIZES, Session
+from gsp.checks import reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import number_of
 from gsp.geometry.frames import log3
@@ -112,10 +113,13 @@ def from_table(state: Session, text: str, name: str) -> Recording:
     """
     if len(text) > LARGEST_TABLE:
         raise InvalidInput(expected(name, f"at most {LARGEST_TABLE} letters", len(text)))
-    lines = [row for row in csv.reader(StringIO(text)) if row]
+    with reading(name, "a table with commas between cells", brief(text)):
+        lines = [row for row in csv.reader(StringIO(text)) if row]
     if not 2 <= len(lines) - 1 <= MOST_SAMPLES:
         raise InvalidInput(expected(name, f"2 to {MOST_SAMPLES} rows", max(len(lines) - 1, 0)))
     header = [cell.strip() for cell in lines[0]]
+    if twice := [column for column in header if column and header.count(column) > 1]:
+        raise InvalidInput(expected(f"{name}, column {brief(twice[0])}", "one of its name", "two"))
     joints = tuple(state.design.joint_names)
     by_pose = set(POSE_COLUMNS) <= set(header)
     if not by_pose and not set(joints) <= set(header):

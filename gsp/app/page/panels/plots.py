@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.page.panels.contours import contour, label_place, round_levels
 from gsp.app.state import curves
-from gsp.app.state.reading import missing_words
+from gsp.app.state.reading import RAISED, missing_words
 from gsp.errors import GspError
 from gsp.figures.gaps import gap_words
 from gsp.geometry.vectors import Array
@@ -21,7 +22,11 @@ SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
 # Decimal places of the line at the present pose: two are the default, too few for small designs.
 MARK_DIGITS = 20
 # The margins of the map [px]: style.css makes what is between them a square.
-MAP_MARGINS = {"left": 64, "right": 88, "top": 16, "bottom": 44}
+MAP_MARGINS = {"left": 80, "right": 80, "top": 16, "bottom": 44}
+# ECharts would make the room smaller where numbers are long.
+GRID = {"outerBoundsMode": "none"}
+# Powers of ten that numbers on axes have in full.
+LEAST_POWER, MOST_POWER = -3, 5
 BLUE, VERMILION, INK = "#0072B2", "#D55E00", "#1F2933"
 
 
@@ -75,22 +80,25 @@ def plot_names(index: str, motion: str, plane: str) -> tuple[str, str]:
 
 def curve_options(curve: curves.Curve) -> dict[str, Any]:
     """Return the plot of an index along a motion, with a line at the present pose."""
-    points = [[float(x), y] for x, y in zip(curve.places, _finite(curve.values), strict=True)]
+    places, axis = _scaled(curve.places, curve.axis)
+    values, label = _scaled(curve.values, curve.label)
+    points = [[x, y] for x, y in zip(places.tolist(), _finite(values), strict=True)]
+    here = curve.here / 10.0 ** power_of_ten(curve.places)
     return {
         **_undrawable(curve.index.symbol, curve.values),
         "animation": False,
-        "grid": {"left": 64, "right": 24, "top": 32, "bottom": 44},
-        "tooltip": {"trigger": "axis"},
+        "grid": {"left": 72, "right": 24, "top": 32, "bottom": 44} | GRID,
+        "tooltip": {"trigger": "axis", "confine": True},
         "xAxis": {
             "type": "value",
-            "name": curve.axis,
+            "name": axis,
             "nameLocation": "middle",
             "nameGap": 28,
-            "min": float(curve.places[0]),
-            "max": float(curve.places[-1]),
+            "min": float(places[0]),
+            "max": float(places[-1]),
             "axisLabel": {"hideOverlap": True, "showMinLabel": False, "showMaxLabel": False},
         },
-        "yAxis": {"type": "value", "name": curve.label, "scale": True},
+        "yAxis": {"type": "value", "name": label, "scale": True},
         "series": [
             {
                 "type": "line",
@@ -103,7 +111,7 @@ def curve_options(curve: curves.Curve) -> dict[str, Any]:
                     "precision": MARK_DIGITS,
                     "label": {"show": False},
                     "lineStyle": {"color": VERMILION, "width": 2, "type": "solid"},
-                    "data": [{"xAxis": curve.here}],
+                    "data": [{"xAxis": here}],
                 },
             }
         ],
@@ -114,6 +122,7 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
     """Return the map of an index over a plane of positions, with contours and their labels."""
     values = _finite(plot.values.ravel())
     size = len(plot.second)
+    (first, across), (second, up) = map(_scaled, (plot.first, plot.second), plot.axes)
     data = [[k // size, k % size, v] for k, v in enumerate(values) if v is not None]
     known = np.array([v for v in values if v is not None] or [0.0, 1.0])
     # A few values near singular poses would take the whole range of colours.
@@ -125,10 +134,13 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
     return {
         **_undrawable(plot.index.symbol, plot.values),
         "animation": False,
-        "grid": MAP_MARGINS,
-        "tooltip": {},
-        "xAxis": [_cells(plot.first), _coordinate(plot.first, plot.axes[0], "bottom", 28)],
-        "yAxis": [_cells(plot.second), _coordinate(plot.second, plot.axes[1], "left", 48)],
+        "grid": MAP_MARGINS | GRID,
+        "tooltip": {
+            "confine": True,
+            ":formatter": _tooltip([across, up, plot.index.symbol], _texts(first), _texts(second)),
+        },
+        "xAxis": [_cells(first), _coordinate(first, across, "bottom", 28)],
+        "yAxis": [_cells(second), _coordinate(second, up, "left", 62)],
         "visualMap": {
             "show": bool(data),
             "seriesIndex": 0,
@@ -137,6 +149,7 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
             "right": 0,
             "top": "middle",
             "calculable": False,
+            "hoverLink": False,
             "text": _range_words(plot.index.symbol, known, low, high),
             "textStyle": {"lineHeight": 16},
             "precision": 3,
@@ -144,10 +157,10 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
         },
         "series": [
             {"type": "heatmap", "data": data},
-            *_contours(plot, round_levels(low, high)),
+            *_contours(plot.values, first, second, round_levels(low, high)),
             {
                 "type": "scatter",
-                "data": [[float(plot.first[middle]), float(plot.second[middle])]],
+                "data": [[float(first[middle]), float(second[middle])]],
                 "xAxisIndex": 1,
                 "yAxisIndex": 1,
                 "symbol": "circle",
@@ -161,23 +174,70 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
 def _range_words(symbol: str, known: Array, low: float, high: float) -> list[str]:
     """Return what stands at the upper and the lower end of the colours."""
     above, below = "≥ " if known.max() > high else "", "≤ " if known.min() < low else ""
-    return [f"{symbol}\n{above}{tables.number(high, 3)}", f"{below}{tables.number(low, 3)}"]
+    power = power_of_ten(known)
+    top, bottom = (tables.number(x / 10.0**power, 3) for x in (high, low))
+    name = with_power(symbol, power).replace(" [", "\n[")
+    return [f"{name}\n{above}{top}", f"{below}{bottom}"]
 
 
-def _contours(plot: curves.Map, levels: list[float]) -> list[dict[str, Any]]:
+def power_of_ten(values: Array) -> int:
+    """Return the power of ten that the numbers of an axis leave out, 0 where they need none.
+
+    >>> power_of_ten(np.array([2e-7, -3e-6])), power_of_ten(np.array([0.1, 2.0]))
+    (-6, 0)
+    """
+    known = np.abs(values[np.isfinite(values)])
+    power = int(np.floor(np.log10(known.max()))) if known.any() else 0
+    return 0 if LEAST_POWER <= power < MOST_POWER else power
+
+
+def with_power(label: str, power: int) -> str:
+    """Return a label, with its unit in brackets if there is one, with a power of ten.
+
+    >>> with_power("x [m]", -6), with_power("GCI", 7), with_power("CTN", 0)
+    ('x [10⁻⁶ m]', 'GCI [10⁷]', 'CTN')
+    """
+    if power == 0:
+        return label
+    name, bracket, unit = label.partition(" [")
+    factor = f"10{str(power).translate(RAISED)}"
+    return f"{name} [{factor} {unit}" if bracket else f"{name} [{factor}]"
+
+
+def _scaled(values: Array, label: str) -> tuple[Array, str]:
+    """Return the numbers and the label of an axis."""
+    power = power_of_ten(values)
+    return values / 10.0**power, with_power(label, power)
+
+
+def _tooltip(names: list[str], first: list[str], second: list[str]) -> str:
+    """Return a function of the page that states the place and the value of a cell of a map."""
+    return (
+        f"(cell) => {{ const names = {json.dumps(names)};"
+        f" const places = [{json.dumps(first)}, {json.dumps(second)}];"
+        " if (cell.seriesType !== 'heatmap') return '';"
+        " const [i, j, value] = cell.value, texts = [places[0][i], places[1][j], value];"
+        " const words = document.createElement('div');"
+        " words.innerText = names.map((name, k) => `${name}: ${texts[k]}`).join('\\n');"
+        " return words.innerHTML; }"
+    )
+
+
+def _contours(
+    values: Array, first: Array, second: Array, levels: list[float]
+) -> list[dict[str, Any]]:
     """Return the series of contour lines, and that of their labels."""
-    values = plot.values
     lines: list[dict[str, Any]] = []
     labels: list[dict[str, Any]] = []
     taken = [0.5 * (np.array(values.shape) - 1.0)]  # the present pose
     for level in levels:
         found = contour(values, level)
-        lines += [{"coords": _coordinates(plot, line)} for line in found]
+        lines += [{"coords": _coordinates(first, second, line)} for line in found]
         place = label_place(found, values.shape, taken)
         if place is not None:
             taken.append(place)
             text = {"formatter": tables.number(level, 4)}
-            labels.append({"value": _coordinates(plot, place), "label": text})
+            labels.append({"value": _coordinates(first, second, place), "label": text})
     axes = {"xAxisIndex": 1, "yAxisIndex": 1, "silent": True}
     written = {"show": True, "position": "inside", "fontSize": 11, "color": INK}
     written |= {"backgroundColor": "#FFFFFFE6", "padding": [1, 3], "borderRadius": 3}
@@ -194,18 +254,24 @@ def _contours(plot: curves.Map, levels: list[float]) -> list[dict[str, Any]]:
     ]
 
 
-def _coordinates(plot: curves.Map, steps: Array) -> list[Any]:
-    """Return coordinates of places (..., 2) in steps of the grid."""
-    start = np.array([plot.first[0], plot.second[0]])
-    step = np.array([plot.first[1], plot.second[1]]) - start
-    flat = (start + steps * step).ravel().tolist()
-    found: list[Any] = np.array([float(f"{x:.6g}") for x in flat]).reshape(steps.shape).tolist()
+def _coordinates(first: Array, second: Array, steps: Array) -> list[Any]:
+    """Return coordinates of places (..., 2) in steps of the grid, to a thousandth of one."""
+    start = np.array([first[0], second[0]])
+    step = np.array([first[1], second[1]]) - start
+    places = 3 - int(np.floor(np.log10(step.min())))
+    found: list[Any] = np.round(start + steps * step, places).tolist()
     return found
 
 
 def _cells(values: Array) -> dict[str, Any]:
     """Return the axis of the cells, which has no marks: they would be at odd numbers."""
-    return {"type": "category", "data": [f"{x:.4g}" for x in values], "show": False}
+    return {"type": "category", "data": _texts(values), "show": False}
+
+
+def _texts(values: Array) -> list[str]:
+    """Return numbers at equal distances with the digits that tell them apart."""
+    places = max(1 - int(np.floor(np.log10(values[1] - values[0]))), 0)
+    return [f"{x + 0.0:.{places}f}" for x in values]
 
 
 def _coordinate(values: Array, name: str, position: str, gap: int) -> dict[str, Any]:

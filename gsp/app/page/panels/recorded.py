@@ -175,7 +175,8 @@ def _dialog(client: Client, opened: Callable[[Recording], None]) -> ui.dialog:
         "Open a motion", "Motion", ".csv", LARGEST_TABLE,
         lambda text, name: opened(from_table(client.state, text, name)),
         "A table with the columns x, y, z, angle_1, angle_2, angle_3 (roll, pitch, yaw in "
-        "degrees), or with the joints of the design; and time, if it is not every 0.1 s.",
+        "degrees), or with the joints of the design (angles in radians); and time, if it is not "
+        "every 0.1 s.",
     )  # fmt: skip
 
 

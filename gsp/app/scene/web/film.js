@@ -6,6 +6,8 @@ const PAPER = "#f4f7f9", FRAMES_PER_SECOND = 20, LONGEST_SIDE = 720;
 const HELD = 1000;
 // How long to wait for the duration of a video [ms].
 const LONGEST_READING = 30000;
+// A video that takes so many times as long as the motion is not what was recorded.
+const SLOWER = 1.25;
 
 export function save(blob, name) {
   const link = document.createElement("a");
@@ -57,7 +59,7 @@ export async function film(scene, kind, places, seconds, name) {
   const delay = (1000 * seconds) / places.length;
   const [blob, all] = await (kind === "gif" ? animation : video)(scene, canvas, places, scale, delay);
   save(blob, `${name}.${kind === "gif" ? "gif" : blob.type.includes("mp4") ? "mp4" : "webm"}`);
-  if (kind !== "gif") await checked(blob, all);
+  if (kind !== "gif") await checked(blob, all, seconds);
   return blob.size;
 }
 
@@ -107,11 +109,14 @@ async function video(scene, canvas, places, scale, delay) {
 }
 
 // A busy browser can lose the end of a video, and can also be too busy to read how long it is.
-async function checked(blob, all) {
-  const has = await duration(blob);
-  if (has >= all) return;
-  const part = has ? `recorded ${has.toFixed(1)} s of ${all.toFixed(1)} s` : "could not read how long the video is";
-  throw new Error(`the browser was too slow and ${part}; a GIF has all pictures`);
+// A slow one shows the motion slower than it is.
+async function checked(blob, all, seconds) {
+  const has = await duration(blob), motion = has - HELD / 1000;
+  if (has >= all && motion < SLOWER * seconds) return;
+  let part = "could not read how long the video is";
+  if (has >= all) part = `made a video of ${motion.toFixed(1)} s of a motion of ${seconds.toFixed(1)} s`;
+  else if (has) part = `recorded ${has.toFixed(1)} s of ${all.toFixed(1)} s`;
+  throw new Error(`the browser was too slow and ${part}; a GIF has all pictures, at the right times`);
 }
 
 // The duration of a video [s], which is known at its end only; 0 where it stays unknown.

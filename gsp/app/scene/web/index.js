@@ -9,6 +9,8 @@ const ROD = 0.011, TUBE = 0.018, BALL = 0.03, MIDDLE = 0.55, NUMBER = 0.3, BEYON
 const EDGE = 4;
 // Assembly modes farther away than so many radii of the mechanism would shrink it: they may be cut.
 const AWAY = 5;
+// The frame of the platform is in the picture unless it makes it so many times as large.
+const WITH_FRAME = 2;
 const UP = new THREE.Vector3(0, 1, 0);
 const VIEWS = { space: [0.9, -1.5, 0.85], plan: [0, -0.001, 1], front: [0, -1, 0.05], side: [1, 0, 0.05] };
 
@@ -268,15 +270,17 @@ export class Scene {
     this.drawing = drawing;
     const size = (this.size = drawing.size);
     this.world = new THREE.Group();
-    const floor = Math.min(0, ...drawing.base.edges.map((p) => p[2] / size));
+    const origin = vector(drawing.origin).divideScalar(-size), near = origin.lengthSq() === 0;
+    const floor = Math.min(...(near ? [0] : []), ...drawing.base.edges.map((p) => p[2] / size));
     const grid = new THREE.GridHelper(4, 20, 0xb8c0c8, 0xdde2e7);
     grid.rotation.x = Math.PI / 2;
-    grid.position.z = floor - 0.012;
+    grid.position.z = (Number.isFinite(floor) ? floor : 0) - 0.012;
     this.base = body(drawing.base, size, GREY);
     this.platform = new THREE.Group();
     this.top = body(drawing.platform, size, 0x0072b2);
     this.platform.add(this.top);
     this.frames = [frame(0.2, "O"), frame(0.2, "P")];
+    this.frames[0].position.copy(origin);
     this.platform.add(this.frames[1]);
     this.ellipsoid = drawing.ellipsoid ? ellipsoid(drawing.ellipsoid, size) : null;
     if (this.ellipsoid) this.platform.add(this.ellipsoid);
@@ -361,7 +365,13 @@ export class Scene {
   // Put the camera where the whole mechanism is in the picture, in a direction from its middle.
   fit(direction) {
     const box = new THREE.Box3();
-    [this.base, this.platform, ...this.legs.flatMap((leg) => leg.ends)].forEach((one) => box.expandByObject(one));
+    [this.base, this.top, ...this.legs.flatMap((leg) => leg.ends)].forEach((one) => box.expandByObject(one));
+    // Frame and ellipsoid of a platform whose origin is far from its anchors would shrink the mechanism.
+    [this.frames[1], this.ellipsoid].forEach((one) => {
+      const its = one ? new THREE.Box3().setFromObject(one) : box;
+      const both = box.clone().union(its).getBoundingSphere(new THREE.Sphere());
+      if (both.radius < WITH_FRAME * box.getBoundingSphere(new THREE.Sphere()).radius) box.union(its);
+    });
     const own = box.getBoundingSphere(new THREE.Sphere()), far = AWAY * own.radius;
     this.others?.children.forEach((one) => {
       const its = new THREE.Box3().setFromObject(one), ball = its.getBoundingSphere(new THREE.Sphere());
