@@ -5,6 +5,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
+# Processes of the tests: one more than processors, as some tests wait for a browser or a database.
+WORKERS ?= $(shell $(PYTHON) -c 'import os; print(1 + len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1 + os.cpu_count())')
 # Byte code is made when a module is imported: of all files, as pip does, it takes half of the time.
 # An environment that forbids it would have each process compile all that it imports.
 export PYTHONDONTWRITEBYTECODE =
@@ -23,7 +25,7 @@ help:
 ## set up .venv, check style and types, run the tests
 test:
 	$(MAKE) -j3 compiled lint
-	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal $(ARGS)
 
 # Compiled functions in the cache, in two parts while tools are installed and types are checked: each
 # takes one to two minutes on one core.
@@ -35,7 +37,7 @@ compiled-%: $(VENV)/.installed
 
 ## every check, with the whole campaigns of thousands of designs (hours)
 check-long: lint compiled
-	$(BIN)/python -m pytest -n auto --dist worksteal --campaign=full $(ARGS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal --campaign=full $(ARGS)
 
 ## check style and types
 lint: $(VENV)/.tools

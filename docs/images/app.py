@@ -12,8 +12,9 @@ from tests.app.visiting import FACTS
 DESIGN = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
 WIDTH, HEIGHT = 1366, 860
 # Both plots are drawn.
-DRAWN = """[...document.querySelectorAll('.gsp-plot')].every((plot) => plot.querySelector('canvas'))
-  && document.querySelectorAll('.gsp-plot').length === 2"""
+PLOTS = "[...document.querySelectorAll('.gsp-plot, .gsp-map > *')]"
+DRAWN = f"{PLOTS}.filter((plot) => plot.querySelector('canvas')).length === 2"
+chromium.DOTS = 1.0
 
 
 async def picture(address: str, folder: Path) -> bytes:
