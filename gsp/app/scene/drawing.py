@@ -90,8 +90,8 @@ def placement(state: Session, reading: Reading, colour: str) -> dict[str, Any]:
 def pose_numbers(design: Design, poses: Pose) -> list[dict[str, Any]]:
     """Return "position", "rotation" and "feet" of `placement` for each of several poses."""
     segments, origin, size = design.at(poses).segments, origin_of(design), size_of(design)
-    ends = (segments.base_feet - origin, segments.platform_feet - origin)
-    feet = np.concatenate(ends, axis=-1)
+    feet = np.concatenate((segments.base_feet, segments.platform_feet), axis=-1)
+    feet = feet - np.tile(origin, 2)
     arm = max(1.0, float(norm(design.platform_points).max()) / size)
     return [
         {
