@@ -22,8 +22,10 @@ def server(tmp_path, design, *, killed=False, port=None):
     words = ["-W", "error", "-m", "gsp", "app", design, "--port", str(port)]
     environment = {**os.environ, "GSP_STORE": str(tmp_path / "maxima.sqlite")}
     environment.pop("NICEGUI_USER_SIMULATION", None)
+    # In a session of its own: Linux shares processors between sessions, and reports, which have a
+    # low priority, would wait for all other tests.
     process = subprocess.Popen(
-        [sys.executable, *words], cwd=ROOT, env=environment,
+        [sys.executable, *words], cwd=ROOT, env=environment, start_new_session=True,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     try:
