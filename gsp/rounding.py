@@ -7,6 +7,19 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decima
 
 # A value that differs less from a number with few digits [share of it] is that number: rounding.
 SHORT_WITHIN = 1e-15
+# Significant digits of a number in double precision.
+MOST_DIGITS = 15
+
+
+def digits_within(value: float, size: float, digits: int = 6) -> int:
+    """Return the significant digits of a coordinate that tell places of a size apart.
+
+    >>> digits_within(0.3, 2.0), digits_within(10000.0279, 2.0), digits_within(1e6, 0.0)
+    (6, 10, 6)
+    """
+    ratio = abs(value) / size if size > 0.0 else 0.0
+    more = math.ceil(math.log10(ratio)) if 1.0 < ratio < math.inf else 0
+    return min(digits + more, MOST_DIGITS)
 
 
 def rounded_down(value: float, digits: int) -> float:

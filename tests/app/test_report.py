@@ -24,7 +24,7 @@ pytest.importorskip("matplotlib", reason="the extra `plots` is not installed")
 from gsp.app.report import page, report
 from gsp.app.report.meanings import MEANINGS
 from gsp.app.report.study import PLANES, study_of
-from gsp.app.report.summary import summary
+from gsp.app.report.summary import place_text, summary
 from gsp.app.reports import BUSY
 
 ROOT = Path(__file__).parents[2]
@@ -325,3 +325,42 @@ def test_a_report_ends_with_a_killed_server(tmp_path):
         assert parent.stdout.readline() == "working\n"
         parent.kill()
         assert parent.communicate(timeout=30.0)[0] == ""
+
+
+def test_designs_far_from_their_frame_keep_the_digits_of_their_size():
+    away = np.array([1e6, -1e6, 5e5])
+    plain = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, strokes=[1.2, 2.6])
+    home = gsp.Pose(plain.home.position + away + [0.05, -0.03, 0.0])
+    far = plain.replace(base_points=plain.base_points + away, home=home)
+    found = study_of(far, None, None, None)
+    shown = text_of(page.parts.dimensions(found)).replace("−", "-")
+    for point in far.base_points:
+        assert ", ".join(f"{x:.12g}" for x in point) in shown
+    assert "1000000.05, -1000000.03, 500001.5" in summary_text(found)
+    box = found.around.box
+    text = text_of(page.proofs.certificates(found)).replace("−", "-")
+    ends = re.findall(r"\b[xyz]\s+(-?[\d.]+)\s+(-?[\d.]+)", text)
+    for (low, high), a, b in zip(ends, box.low, box.high, strict=False):
+        assert a <= float(low) < float(high) <= b
+        assert float(high) - float(low) == pytest.approx(b - a, rel=1e-4)
+    assert len(ends) == 3
+
+
+def summary_text(study):
+    return place_text(study.state.pose, "", study.state.size).replace("−", "-")
+
+
+def test_a_design_with_more_legs_is_counted_among_the_others():
+    """Its mechanism is none of the 195."""
+    angle = np.arange(7) * 2.0 * np.pi / 7.0
+    ring = np.stack((np.cos(angle), np.sin(angle), 0.0 * angle), axis=1)
+    turned = ring @ np.asarray(gsp.Pose.from_rpy([0, 0, 0], [0, 0, 0.5]).rotation).T
+    design = gsp.Design(["D1"] * 7, 2.0 * ring, turned, home=gsp.Pose([0.0, 0.1, 1.5]))
+    found = study_of(design, None, None, None)
+    place = found.places["control_number"]
+    if place is not None:
+        assert place.total == len(found.others) + 1
+    found.__dict__["distance"] = type("", (), {"upper": np.inf, "lower": 1.0})()
+    assert "a singular pose none was found" in " ".join(
+        text_of(page.proofs.singularity(found)).split()
+    )

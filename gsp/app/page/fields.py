@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 from nicegui import ui
 
+from gsp.rounding import digits_within
+
 # What is rounding of a coordinate, as a share of the range in which it is.
 FIELD_ROUNDING = 1e-12
 
@@ -55,9 +57,9 @@ class NumberField:
         """The entry, without spaces around it."""
         return (self.part.value or "").strip()
 
-    def show(self, value: float | None) -> None:
-        """Show a value; an entry stays as long as the value does."""
-        text = words(value)
+    def show(self, value: float | None, size: float = 0.0) -> None:
+        """Show a value, with six digits of a size; an entry stays as long as the value does."""
+        text = words(value, size)
         if text != self._shown:
             self._shown = text
             self.restore()
@@ -81,10 +83,12 @@ def resolved(value: float, scale: float) -> float:
     return 0.0 if abs(value) <= FIELD_ROUNDING * scale else value
 
 
-def words(value: float | None) -> str:
-    """Return a number with six digits; "" for None and NaN.
+def words(value: float | None, size: float = 0.0) -> str:
+    """Return a number with six digits, of a size if that is less; "" for None and NaN.
 
-    >>> words(12.5), words(6.0), words(None), words(float("nan"))
-    ('12.5', '6', '', '')
+    >>> words(12.5), words(10000.0517, 2.0), words(None), words(float("nan"))
+    ('12.5', '10000.0517', '', '')
     """
-    return "" if value is None or value != value else f"{value + 0.0:.6g}"
+    if value is None or value != value:
+        return ""
+    return f"{value + 0.0:.{digits_within(value, size)}g}"

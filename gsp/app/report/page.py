@@ -85,7 +85,7 @@ def report(
             tell(done, len(SECTIONS))
     words = {
         "title": escape(shortened(design.name or "design")),
-        "place": escape(place_text(state.pose, design.unit)),
+        "place": escape(place_text(state.pose, design.unit, state.size)),
         "summary": "".join(f"<p>{escape(line)}</p>" for line in summary(study)),
         "contents": "".join(f'<a href="#{_anchor(t)}">{t}</a>' for t, _ in SECTIONS),
         "made": escape(f"gsp {__version__}" + (f", {command}" if command else "")),

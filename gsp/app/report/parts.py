@@ -17,6 +17,7 @@ from gsp.app.scene.figure import figure
 from gsp.app.state.matrices import HOMOGENEOUS, LINES, PLAIN, matrix
 from gsp.app.state.reading import IndexReading, powers
 from gsp.geometry.vectors import Array
+from gsp.rounding import digits_within
 
 
 def geometry(study: Study) -> str:
@@ -32,14 +33,14 @@ def geometry(study: Study) -> str:
 
 def dimensions(study: Study) -> str:
     """Return the legs with their anchors and lines."""
-    design = study.state.design
+    design, size = study.state.design, study.state.size
     columns = {
         "leg": [str(i + 1) for i in range(design.n_legs)],
         "constraints": [escape(leg.name) for leg in design.legs],
         "joints": [escape(" ".join(map(str, leg.joints))) for leg in design.legs],
-        "base point": [_vector(point) for point in design.base_points],
+        "base point": [_vector(point, size) for point in design.base_points],
         "base line": [_vector(line) for line in design.base_directions],
-        "platform point": [_vector(point) for point in design.platform_points],
+        "platform point": [_vector(point, size) for point in design.platform_points],
         "platform line": [_vector(line) for line in design.platform_directions],
     }
     used = {name: texts for name, texts in columns.items() if any(texts)}
@@ -144,10 +145,12 @@ def cells(rows: Iterable[Sequence[str]]) -> list[str]:
     ]
 
 
-def _vector(vector: Array) -> str:
-    """Return three numbers; nothing for a direction that a leg does not use."""
+def _vector(vector: Array, size: float = 1.0) -> str:
+    """Return three numbers, six digits of a size; nothing for a direction that is not used."""
     values = vector.tolist()
-    return "" if np.isnan(values[0]) else ", ".join(number(x, 6) for x in values)
+    if np.isnan(values[0]):
+        return ""
+    return ", ".join(number(x, digits_within(x, size)) for x in values)
 
 
 def wide(html: str) -> str:

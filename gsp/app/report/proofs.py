@@ -15,7 +15,7 @@ from gsp.geometry.pose import PoseBox
 from gsp.indices import INDICES
 from gsp.model.units import power_base
 from gsp.proof.certificate import Certificate
-from gsp.rounding import rounded_down, rounded_up
+from gsp.rounding import digits_within, rounded_down, rounded_up
 
 
 def workspace(study: Study) -> str:
@@ -67,7 +67,7 @@ def _around(study: Study) -> str:
     found = study.around
     if found.box is None:
         return "<p>Of no box around the pose this is proven.</p>" + _end(study)
-    rows = cells(_intervals(found.box, study.state.design.unit))
+    rows = cells(_intervals(found.box, study.state.design.unit, study.state.size))
     boxes = found.certificate.n_boxes if found.certificate is not None else 0
     return (
         f"<p>This is proven for the box below, which {boxes} small boxes cover:</p>"
@@ -92,17 +92,20 @@ def _end(study: Study) -> str:
     return f"<p class=note>{escape(what)}</p>"
 
 
-def _intervals(box: PoseBox, unit: str) -> list[tuple[str, str, str]]:
-    """Return name, least and greatest value of each coordinate of a box."""
+def _intervals(box: PoseBox, unit: str, size: float) -> list[tuple[str, str, str]]:
+    """Return name, least and greatest value of each coordinate of a box.
+
+    Positions have six digits of a size, or of the width of the box where that is less.
+    """
     angles = ["roll", "pitch", "yaw"]
     if box.order != "rpy":
         angles = [f"angle {k} ({box.order})" for k in (1, 2, 3)]
     turned = np.rad2deg([box.low[3:], box.high[3:]]).T.tolist()
-    places = np.array([box.low[:3], box.high[:3]]).T.tolist()
-    rows = [
-        (n, measured(rounded_up(a, 6), unit, 6), measured(rounded_down(b, 6), unit, 6))
-        for n, (a, b) in zip("xyz", places, strict=True)
-    ]
+    rows = []
+    for name, a, b in zip("xyz", box.low[:3].tolist(), box.high[:3].tolist(), strict=True):
+        digits = digits_within(max(abs(a), abs(b)), min(size, b - a) or size)
+        ends = rounded_up(a, digits), rounded_down(b, digits)
+        rows.append((name, *(measured(end, unit, digits) for end in ends)))
     rows += [
         (n, f"{number(rounded_up(a, 5))}°", f"{number(rounded_down(b, 5))}°")
         for n, (a, b) in zip(angles, turned, strict=True)
@@ -134,13 +137,16 @@ def singularity(study: Study) -> str:
             "proven: no singular pose is nearer than",
             measured(rounded_down(float(found.lower), 4), unit, 4),
         ),
-        ("a singular pose was found at", measured(rounded_up(float(found.upper), 4), unit, 4)),
     ]
     if np.isfinite(found.upper):
-        facts.append(("that pose", place_text(found.nearest, unit)))
+        upper = measured(rounded_up(float(found.upper), 4), unit, 4)
+        facts.append(("a singular pose was found at", upper))
+        facts.append(("that pose", place_text(found.nearest, unit, study.state.size)))
         v, w = np.split(found.free_motion, 2)
         if np.isfinite(v).all():
             facts.append(("uncontrolled motion there", _motion(v, w)))
+    else:
+        facts.append(("a singular pose", "none was found"))
     return (
         listed(facts)
         + "<p class=note>The distance of two poses is sqrt(|p − p′|² + (L θ)²), with the angle θ "

@@ -59,7 +59,7 @@ class Place:
     better : int
         How many of them have a better value.
     total : int
-        How many have a value.
+        How many have a value, the design itself among them.
     best : str
         The first of them.
     """
@@ -188,7 +188,8 @@ class Study:
         merits = np.asarray(index.merit(np.array([one.value for one in some])))
         mine = float(index.merit(np.asarray(own.value)))
         better = int((merits > mine + SAME * abs(mine)).sum())
-        return Place(better=better, total=len(some), best=some[0].name)
+        others = sum(one.name != self.state.design.mechanism.name for one in some)
+        return Place(better=better, total=1 + others, best=some[0].name)
 
     @cached_property
     def places(self) -> dict[str, Place | None]:

@@ -82,14 +82,14 @@ def compared(study: Study) -> str:
     if place is None:
         return ""
     return (
-        f"By the control number it is {ordinal(place.better + 1)} of the {place.total} mechanisms "
-        "of the catalogue that are not singular on the same anchor lines at this pose."
+        f"By the control number it is {ordinal(place.better + 1)} of {place.total} mechanisms: "
+        "itself and those of the catalogue that are not singular on its anchor lines at this pose."
     )
 
 
-def place_text(pose: Pose, unit: str) -> str:
-    """Return a pose in words, with true minus signs."""
-    return pose_text(pose, unit).replace("-", "−")
+def place_text(pose: Pose, unit: str, size: float) -> str:
+    """Return a pose in words, with true minus signs, and six digits of a size."""
+    return pose_text(pose, unit, size).replace("-", "−")
 
 
 def measured(value: float, unit: str, digits: int = 3) -> str:

@@ -81,7 +81,7 @@ class Row:
         # Without rounding, which screen readers would announce.
         shown = float(f"{np.nan_to_num(value, nan=low):.12g}")
         self.slider.value = float(np.clip(shown, low, high))
-        self.field.show(resolved(value, max(abs(low), abs(high))))
+        self.field.show(resolved(value, max(abs(low), abs(high))), high - low)
 
     def enable(self, able: bool) -> None:
         """Allow or forbid changes."""
