@@ -141,7 +141,8 @@ def motion_panel(client: Client) -> None:
             row.show(float(values[number]), centre - reach, centre + reach)
         direction, angle = motion.axis_and_angle(state.pose)
         words = ", ".join(f"{x + 0.0:.4f}" for x in direction)
-        axis.text = f"Rotation by {angle:.4g}° about the axis ({words})"
+        turned = f"Rotation by {angle:.4g}° about the axis ({words})"
+        axis.text = turned if angle > 0.0 else "No rotation"
         least.content = tables.least_left(client.reading)
         steps()
 
