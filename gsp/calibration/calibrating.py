@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.arguments import bounded_array, positive
-from gsp.calibration.fitting import Fit, Problem, fitted, settled
+from gsp.calibration.fitting import Fit, Problem, best
 from gsp.calibration.losses import LOSSES, Robust
 from gsp.calibration.measurements import Measurements, State
 from gsp.calibration.result import Calibration
+from gsp.calibration.settling import settled
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -66,7 +67,9 @@ def calibrate(
     point : (3,) array_like [unit]
         The point whose place was measured, in platform axes.
     guess : Pose of batch shape () or (k,), or None [unit]
-        Where poses are not given: near the poses. Default the home pose of the design.
+        Where poses are not given: near the poses. Default the home pose of the design. With one
+        for each pose the search starts there; with a single one it starts twice, from that one and
+        from the poses near it that fit the nominal dimensions, and the better fit is returned.
     joint_errors : float, (n,) array_like or None [unit, rad]
         Standard errors of the readings. None: equal ones, whose size is estimated from the
         residuals; angles have that of distances over `design.rms_radius`.
@@ -78,11 +81,13 @@ def calibrate(
         platform_directions, joints (their zero points). The rest stays nominal.
     loss : "linear", "soft_l1", "huber", "cauchy" or "arctan"
         How much large residuals count, as in `scipy.optimize.least_squares`.
+        "cauchy" and "arctan" are not convex: the search can end in a minimum that is not the least.
     loss_scale : float [standard errors]
         From which residual on it is a large one, from 1e-100 to 1e100.
     tolerance : float [1]
-        Largest component of the last step, in sizes of the design and in rad.
+        Largest component of the last step, of dimensions and poses, in sizes of the design and rad.
     max_iterations : int
+        Number of steps from each start.
     progress : see `gsp.rank`
 
     Returns
@@ -125,10 +130,11 @@ def calibrate(
     state = State(np.zeros(len(dimensions)), start)
     if not np.isfinite(problem.cost(state)):
         raise InvalidInput(expected("poses", "poses at which every leg is defined", "others"))
+    starts = [state]
+    if not (measured.exact or isinstance(poses, Pose) or (guess is not None and guess.shape)):
+        starts.insert(0, settled(problem, state, max_iterations))
     with meter(progress, "calibration") as report:
-        if not measured.exact:
-            state = settled(problem, state, max_iterations)
-        fit = fitted(problem, state, tolerance, max_iterations, report)
+        fit = best(problem, starts, tolerance, max_iterations, report)
     return _result(problem, fit, known=joint_errors is not None)
 
 
@@ -224,8 +230,7 @@ def _result(problem: Problem, fit: Fit, *, known: bool) -> Calibration:
     dimensions, measured = problem.dimensions, problem.measured
     n, sizes = len(measured.joint_errors), dimensions.sizes
     chi_squared = float((fit.weights * fit.residuals**2).sum())
-    free = fit.residuals.size - fit.reduced.rank
-    free -= 0 if measured.exact else 6 * len(measured.joints)
+    free = fit.residuals.size - fit.rank
     factor = 1.0 if known else (chi_squared / free if free > 0 else np.nan)
     return Calibration(
         nominal=dimensions.design,

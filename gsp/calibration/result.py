@@ -54,6 +54,8 @@ class Calibration(ReadOnly):
     degrees_of_freedom : int
         Number of data less that of the unknowns which they determine.
     converged : bool
+        If not, no other attribute is that of a minimum: also what is identified and the covariance
+        hold at the place where the search ended only.
     iterations : int
     """
 

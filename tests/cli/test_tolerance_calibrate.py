@@ -1,5 +1,6 @@
 """`gsp tolerance` and `gsp calibrate`: the numbers of the library, files, and bad input."""
 
+import functools
 import json
 from pathlib import Path
 
@@ -79,6 +80,25 @@ def test_tables_that_cannot_be_used(gsp, machine):
     assert gsp("calibrate", "nominal.toml", "log.csv", "--loss", "huber").error.startswith(
         "gsp: --joint-errors: expected standard errors"
     )
+
+
+def test_options_that_measurements_leave_without_an_effect(gsp, machine):
+    call = ("calibrate", "nominal.toml", "log.csv")
+    assert gsp(*call, "--point", 0, 0, 1).error.startswith("gsp: --point: not used beside measured")
+    machine[3].iloc[:, :9].to_csv("log.csv", index=False)
+    assert "--order: not used beside a table without angles" in gsp(*call, "--order", "zyz").error
+    machine[3].iloc[:, :6].to_csv("log.csv", index=False)
+    errors = gsp(*call, "--pose-errors", 1, 1, "--point", 0, 0, 1).error
+    assert errors == "gsp: --point, --pose-errors: not used beside a table without places"
+
+
+def test_a_search_that_has_not_converged_is_stated(gsp, machine, monkeypatch):
+    short = functools.partial(library.calibrate, max_iterations=1)
+    monkeypatch.setattr("gsp.cli.design.calibrate.calibrate", short)
+    result = gsp("calibrate", "nominal.toml", "log.csv")
+    stated = "not converged. Where the search ended, the data determine 42 of 42 coordinates"
+    assert stated in result.out.replace("\n", " ")
+    assert "not converged after 1 iteration: dimensions, errors and what is not" in result.err
 
 
 def test_the_tolerance_of_a_pose_is_that_of_the_library(gsp, machine):

@@ -11,7 +11,7 @@ import typer
 from gsp.calibration import Calibration, calibrate
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_table
-from gsp.cli.inputs.options import DesignName, Force, Order, Out
+from gsp.cli.inputs.options import DesignName, Force, Order, Out, refuse_unused
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.errors import InvalidInput, expected
 from gsp.files.cells import table_rows
@@ -26,6 +26,7 @@ MOST_ROWS = 12
 
 
 def calibrate_command(
+    context: typer.Context,
     design: DesignName,
     measurements: Annotated[
         Path,
@@ -93,6 +94,7 @@ def calibrate_command(
         check_table(out, overwrite=force)
     nominal = find_design(design)
     readings, poses = measured(nominal, measurements, order)
+    _refuse_unused(context, poses)
     errors: Any = pose_errors
     if pose_errors is not None and not isinstance(poses, Pose):
         errors = pose_errors[0]
@@ -136,6 +138,16 @@ def measured(design: Design, path: Path, order: str) -> tuple[Any, Any]:
     return readings, Pose.from_angles(numbers[:, :3], numbers[:, 3:], order, degrees=True)
 
 
+def _refuse_unused(context: typer.Context, poses: Any) -> None:
+    """Raise InvalidInput on options that have no effect beside what was measured of the poses."""
+    if poses is None:
+        refuse_unused(context, ["point", "pose_errors", "order"], "a table without places")
+    elif isinstance(poses, Pose):
+        refuse_unused(context, ["point"], "measured angles: expected x, y, z alone")
+    else:
+        refuse_unused(context, ["order"], "a table without angles")
+
+
 def _facts(found: Calibration) -> dict[str, Any]:
     return {
         "chi_squared": found.chi_squared,
@@ -149,15 +161,20 @@ def _facts(found: Calibration) -> dict[str, Any]:
 
 def _report(found: Calibration, k: int, path: Path) -> None:
     size = float(np.sqrt((found.residuals**2).mean()))
-    identified = int(found.identified.sum())
-    say(f"{counted(k, 'pose')} of {path}: {identified} of {len(found.names)} coordinates", "bold")
+    known = f"{int(found.identified.sum())} of {len(found.names)} coordinates"
+    if not found.converged:
+        known = f"not converged. Where the search ended, the data determine {known}"
+    say(f"{counted(k, 'pose')} of {path}: {known}", "bold")
     say(f"Residuals  {number(size)} (root mean square of the readings)")
     fit = f"{number(found.chi_squared)} for {found.degrees_of_freedom} degrees of freedom"
     say(f"χ²         {fit}")
     for what in found.not_identified:
         say(f"Not known  {what}")
     if not found.converged:
-        warn(f"not converged after {counted(found.iterations, 'iteration')}")
+        warn(
+            f"not converged after {counted(found.iterations, 'iteration')}: dimensions, errors and "
+            "what is not known are those of no minimum"
+        )
     table = found.table()
     sizes = table["deviation"].abs().sort_values(ascending=False, kind="stable")
     names = ("name", "nominal", "value", "deviation", "standard_error")
