@@ -91,7 +91,8 @@ def assess(
         "…_volume_high", between which it is proven to be [unit³], and "…_volume_resolution", the
         longest side of the cells that are undecided [unit]; the least volume decides. Where
         nothing else is wanted, the table has CDN_3P as well. A design that has no pose within
-        the limits has `feasible` = 0 and no score; "violated_joint", "violated_cone" … are the
+        the limits has `feasible` = 0, and score and rank NaN, as every design of which a wanted
+        value is undefined; it comes last. "violated_joint", "violated_cone" … are the
         shares of all poses that violate a limit of the kind. With loads "actuator_force" [N] and
         "actuator_torque" [N · unit] are the greatest at the poses within the limits, inf if one is
         singular. `attrs` holds the task as well.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def scored(rows: Sequence[dict[str, Any]], task: Task) -> pd.DataFrame:
-    """Return rows as a table with rank and score, best first; equal scores share a rank."""
+    """Return rows as a table with rank and score, best first; see `ranks`."""
     import pandas as pd
 
     frame = pd.DataFrame(rows)
@@ -24,9 +24,13 @@ def scored(rows: Sequence[dict[str, Any]], task: Task) -> pd.DataFrame:
     return frame.sort_values("rank", kind="stable", ignore_index=True)
 
 
-def ranks(frame: pd.DataFrame) -> pd.Series[int]:
-    """Return the rank of each row by its score, 1 for the greatest; rows without one come last."""
-    return frame["score"].rank(method="min", ascending=False, na_option="bottom").astype(int)
+def ranks(frame: pd.DataFrame) -> pd.Series[Any]:
+    """Return the rank of each row by its score, 1 for the greatest; NaN for rows without one.
+
+    Equal scores share a rank. Ranks are integers where all rows have a score.
+    """
+    found = frame["score"].rank(method="min", ascending=False)
+    return found if found.isna().any() else found.astype(int)
 
 
 def score(frame: pd.DataFrame, task: Task) -> Array:

@@ -24,7 +24,7 @@ pytest.importorskip("matplotlib", reason="the extra `plots` is not installed")
 from gsp.app.report import page, report
 from gsp.app.report.meanings import MEANINGS
 from gsp.app.report.study import PLANES, study_of
-from gsp.app.report.summary import place_text, summary
+from gsp.app.report.summary import met, place_text, summary
 from gsp.app.reports import BUSY
 
 ROOT = Path(__file__).parents[2]
@@ -171,7 +171,7 @@ def test_a_task_is_proven_and_compared():
     found = study_of(design, None, task, None)
     assert found.certificate.status == "proven"
     assert "all poses of the task are regular" in " ".join(summary(found))
-    text = text_of(page.proofs.task(found))
+    text = text_of(page.tasks.task(found))
     worst = gsp.exploration.assess(design, task, progress=False)["control_number_proven"][0]
     assert f"{worst:.5g}" in text
     assert f"{OCTAHEDRAL} (this design)" in text
@@ -179,6 +179,72 @@ def test_a_task_is_proven_and_compared():
     other = gsp.Task(poses=box, wanted=["worst CTN"], unit="mm")
     with pytest.raises(gsp.GspError, match="unit of the task"):
         report(metres, task=other, progress=False)
+
+
+LIFT = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, strokes=[1.2, 2.6], unit="m", name="lift")
+STROKES = gsp.Limits(strokes=[[1.2, 2.6]] * 6)
+HIGH = [[0.0, 0.0, 9.0], [0.0, 0.1, 9.5]]
+
+
+def test_a_task_that_the_design_cannot_meet_is_said_first():
+    task = gsp.Task(poses=gsp.Pose(HIGH), wanted="worst CTN", limits=STROKES, length=0.8)
+    found = study_of(LIFT, None, task, None)
+    first = summary(found)[0]
+    assert first.startswith("None of the 2 poses of the task is within the limits. At position (0,")
+    leg = np.linalg.norm(LIFT.platform_points[0] + HIGH[0] - LIFT.base_points[0])
+    assert f"d1 = {leg:.6g} > 2.6, and 5 more." in first
+    assert text_of(page.tasks.at_each(found)).count(" > 2.6") == 12
+    text = text_of(page.tasks.task(found))
+    assert "0 of 2 (0 %)" in text
+    assert "None of the 196 designs has a place" in text
+    assert "1 of 196" not in text
+
+
+@pytest.mark.parametrize(
+    ("positions", "limits", "said"),
+    [
+        ([*HIGH, [0, 0, 1.5]], STROKES, "Only 1 of the 3 poses of the task is within the limits"),
+        ([[0, 0, 1.5]], STROKES, "At the pose of the task the actuators control all motions"),
+        ([[0, 0, 1.5]] * 2, STROKES, "At all 2 poses .*, and all limits are satisfied"),
+        ([[0, 0, 0], [0, 0, 1.5]], None, "cannot be used at 1 of the 2 poses .*: singular"),
+    ],
+)
+def test_single_poses_are_in_or_out(positions, limits, said):
+    design = LIFT if limits else LIFT.replace(strokes=None)
+    task = gsp.Task(poses=gsp.Pose(positions), wanted="worst CTN", limits=limits, length=0.8)
+    found = study_of(design, None, task, None)
+    assert re.search(said, met(found))
+    text = text_of(page.tasks.at_each(found))
+    assert text.count("regular") == len(positions) - (limits is None)
+
+
+def test_sampled_poses_out_of_the_limits_are_counted():
+    box = gsp.PoseBox([0.0, 0.0, (1.5, 9.0)], [0.0, 0.0, 0.0])
+    task = gsp.Task(poses=box, wanted="mean CTN", limits=gsp.Limits(), samples=40)
+    left = int(gsp.feasible(LIFT, task.pose(), STROKES).ok.sum())
+    found = met(study_of(LIFT, None, task, None))
+    assert 1 < left < 20
+    assert found.startswith(f"Only {left} of the 40 sampled poses of the task are within")
+
+
+def test_mechanisms_without_strokes_are_compared_without_limits():
+    box = gsp.PoseBox([0.0, 0.0, (1.5, 2.5)], [0.0, 0.0, 0.0])
+    loads = gsp.statics.Masses(platform=60.0)
+    wanted = ["mean CTN", "proven worst CTN"]
+    task = gsp.Task(poses=box, wanted=wanted, limits=gsp.Limits(), samples=8, payload=loads)
+    unnamed = LIFT.replace(name="")
+    text = text_of(page.tasks.task(study_of(unnamed, None, task, None)))
+    assert "design (this design)" in text
+    row = gsp.exploration.assess(LIFT, task, progress=False).iloc[0]
+    assert 0.0 < row["feasible"] < 1.0
+    for column in ("control_number_mean", "control_number_proven", "actuator_force"):
+        assert f"{row[column]:.5g}" in text
+    assert "compared without strokes" in text
+    free = gsp.Task(poses=box, wanted=["mean CTN", "worst CTN"], samples=8, length=LIFT.rms_radius)
+    own = gsp.exploration.assess(LIFT.replace(strokes=None), free, progress=False).iloc[0]
+    assert f"{own['control_number_mean']:.4g} {own['control_number_min']:.4g}" in (
+        re.sub(r"\s+", " ", text)
+    )
 
 
 def test_progress_counts_the_sections(monkeypatch):

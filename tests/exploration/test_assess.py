@@ -203,7 +203,12 @@ def test_a_task_that_no_design_meets():
     table = assess(DESIGNS[:3], task)
     assert (table["feasible"] == 0.0).all()
     assert table["score"].isna().all()
-    assert (table["rank"] == 1).all()
+    assert table["rank"].isna().all()
+    own = gsp.Task(poses=BOX, wanted=WANTED, limits=gsp.Limits(), samples=20)
+    few = [DESIGNS[i].replace(strokes=[[1.0, top]] * 6) for i, top in enumerate((2.0, 900.0))]
+    some = assess(few, own)
+    assert some["rank"].fillna(0.0).tolist() == [1.0, 0.0]
+    assert some["score"].isna().tolist() == [False, True]
 
 
 def test_singular_designs_have_score_zero():

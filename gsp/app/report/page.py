@@ -6,7 +6,7 @@ from collections.abc import Callable
 from html import escape
 from pathlib import Path
 
-from gsp.app.report import parts, proofs
+from gsp.app.report import parts, proofs, tasks
 from gsp.app.report.study import Study, attempted, study_of
 from gsp.app.report.summary import place_text, summary
 from gsp.app.state.choices import shortened
@@ -30,7 +30,7 @@ SECTIONS: tuple[Section, ...] = (
     ("Distance to singularity", proofs.singularity),
     ("Forces", proofs.statics),
     ("Comparison with the catalogue", proofs.comparison),
-    ("Task", proofs.task),
+    ("Task", tasks.task),
 )
 
 

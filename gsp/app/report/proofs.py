@@ -1,4 +1,4 @@
-"""Sections of a report about many poses: workspace, certificates, forces, comparison, task."""
+"""Sections of a report about many poses: workspace, certificates, forces, comparison."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 from gsp.app.page.tables import number, table
 from gsp.app.report import pictures
 from gsp.app.report.parts import cells, listed, wide
-from gsp.app.report.study import PLANES, REPORT_BOXES, Study, attempted, quick
-from gsp.app.report.summary import measured, place_text
-from gsp.geometry.pose import PoseBox
+from gsp.app.report.study import PLANES, REPORT_BOXES, Study, attempted
+from gsp.app.report.summary import bracket, measured, place_text
+from gsp.app.report.tasks import at_each
+from gsp.geometry.pose import Pose, PoseBox
 from gsp.indices import INDICES
 from gsp.model.units import power_base
 from gsp.proof.certificate import Certificate
@@ -45,21 +46,20 @@ def workspace(study: Study) -> str:
     )
 
 
-def bracket(low: float, high: float) -> str:
-    """Return two proven ends."""
-    return f"between {number(rounded_down(low, 4))} and {number(rounded_up(high, 4))}"
-
-
 def certificates(study: Study) -> str:
     """Return what is proven over boxes of poses."""
     claims = "no motion of the platform is uncontrolled"
     claims += "" if study.limits is None else ", and all limits are satisfied"
     text = f"<p>Regular: at every pose of a set, {claims}.</p>" + _around(study)
     if study.task is not None:
-        found, why = attempted(lambda: study.certificate)
         text += "<h3>The poses of the task</h3>"
-        text += f"<p class=note>{escape(why)}</p>" if found is None else _status(found)
+        text += at_each(study) if isinstance(study.task.poses, Pose) else _of_task(study)
     return text
+
+
+def _of_task(study: Study) -> str:
+    found, why = attempted(lambda: study.certificate)
+    return f"<p class=note>{escape(why)}</p>" if found is None else _status(found)
 
 
 def _around(study: Study) -> str:
@@ -68,9 +68,10 @@ def _around(study: Study) -> str:
     if found.box is None:
         return "<p>Of no box around the pose this is proven.</p>" + _end(study)
     rows = cells(_intervals(found.box, study.state.design.unit, study.state.size))
-    boxes = found.certificate.n_boxes if found.certificate is not None else 0
+    n = found.certificate.n_boxes if found.certificate is not None else 0
+    cover = "1 small box covers" if n == 1 else f"{n} small boxes cover"
     return (
-        f"<p>This is proven for the box below, which {boxes} small boxes cover:</p>"
+        f"<p>This is proven for the box below, which {cover}:</p>"
         + wide(table(("coordinate", "from", "to"), rows))
         + _end(study)
     )
@@ -121,7 +122,7 @@ def _status(found: object) -> str:
     if reason:
         text += f": {escape(reason)}"
     if isinstance(found, Certificate):
-        text += f", {found.n_boxes} boxes"
+        text += f", {found.n_boxes} box{'' if found.n_boxes == 1 else 'es'}"
         if status == "undecided":
             text += f", {rounded_down(100.0 * found.proven_share, 3):.3g} % of the volume proven"
     return text + ".</p>"
@@ -211,34 +212,4 @@ def comparison(study: Study) -> str:
         "<p class=note>The mechanisms of the catalogue on the anchor lines of the design, each at "
         "the same pose, with the same length and ellipsoid. Those that are singular there do not "
         "count.</p>"
-    )
-
-
-def task(study: Study) -> str:
-    """Return what the task wants, and the place of the design among the others by its score."""
-    wanted = study.task
-    if wanted is None:
-        return "<p>No task was given: <code>--task FILE</code>.</p>"
-    row = study.assessed
-    facts = [(wish.label, row[wish.column]) for wish in wanted.wanted]
-    shown = [(name, number(float(value), 5)) for name, value in facts]
-    if wanted.limits is not None:
-        shown.append(("poses within the limits", f"{100.0 * float(row['feasible']):.4g} %"))
-    ranked = study.ranked
-    here = int(np.flatnonzero((ranked["design"] == study.state.design.name).to_numpy())[0])
-    columns = {wish.column: wish.label for wish in quick(wanted).wanted}
-    first = sorted({*range(min(5, len(ranked))), here})
-    rows = [
-        (
-            escape(str(ranked["design"][i])) + (" (this design)" if i == here else ""),
-            f"{int(ranked['rank'][i])} of {len(ranked)}",
-            number(float(ranked["score"][i]), 4),
-            *(number(float(ranked[column][i]), 4) for column in columns),
-        )
-        for i in first
-    ]
-    return (
-        listed(shown)
-        + "<h3>This design and the mechanisms on its anchor lines, by the score of the task</h3>"
-        + wide(table(("design", "place", "score", *columns.values()), cells(rows)))
     )

@@ -7,7 +7,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from gsp.app.report.others import ranked
 from gsp.app.state import curves
 from gsp.app.state.curves import on_template
 from gsp.app.state.reading import Reading, read
@@ -18,7 +20,7 @@ from gsp.exploration import Task, assess
 from gsp.geometry.pose import Pose, PoseBox, PosePath
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, Index
-from gsp.limits import Limits
+from gsp.limits import Feasibility, Limits, feasible
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.proof import certify, certify_path, largest_box, singularity_distance
@@ -140,7 +142,36 @@ class Study:
             return certify(design, task.poses, self.limits, budget=TASK_BOXES)
         if isinstance(task.poses, PosePath):
             return certify_path(design, task.poses, self.limits, budget=TASK_BOXES)
-        raise InvalidInput("The task lists single poses, between which nothing is proven.")
+        raise InvalidInput("The task lists single poses, which are evaluated.")
+
+    @cached_property
+    def poses(self) -> Pose:
+        """The poses of the task; of a box or path a sample."""
+        if self.task is None:
+            raise InvalidInput("No task was given.")
+        return self.task.pose()
+
+    @cached_property
+    def within(self) -> Feasibility | None:
+        """Which poses of the task are within the limits; None if there are no limits."""
+        if self.limits is None:
+            return None
+        return feasible(self.state.design, self.poses, self.limits)
+
+    def violation(self, i: int) -> str:
+        """Return which limits the i-th pose of the task violates, "" if none."""
+        if self.limits is None:
+            return ""
+        return feasible(self.state.design, self.poses[i], self.limits).reason
+
+    @cached_property
+    def unusable(self) -> NDArray[np.str_]:
+        """Why the design cannot be used at poses of the task, "" where it can, limits aside."""
+        posture = self.state.design.at(self.poses)
+        reasons = np.where(posture.singular(), "singular", "").astype(object)
+        for entry in posture.undefined:
+            reasons[entry.pose] = f"{entry.joint}: {entry.reason}"
+        return reasons.astype(np.str_)
 
     @cached_property
     def distance(self) -> SingularityDistance:
@@ -209,8 +240,12 @@ class Study:
         """The design and the mechanisms on its anchor lines, ranked for the task, best first."""
         if self.task is None:
             raise InvalidInput("No task was given.")
-        designs = [self.state.design, *on_template(self.state.design)]
-        return assess(designs, quick(self.task), progress=False)
+        return ranked(self.state.design.replace(name=self.name), self.task)
+
+    @property
+    def name(self) -> str:
+        """The name of the design in the table of its task."""
+        return self.state.design.name or "design"
 
 
 def study_of(design: Design, pose: Pose | None, task: Task | None, length: float | None) -> Study:
@@ -223,19 +258,6 @@ def study_of(design: Design, pose: Pose | None, task: Task | None, length: float
     state = with_length(state, given or state.length or state.size)
     state = replace(state, maximum=attempted(lambda: known_maximum(design))[0])
     return Study(state, None if task is None else replace(task, length=state.length))
-
-
-def quick(task: Task) -> Task:
-    """Return a task without proofs: proven worst values become worst values at its poses.
-
-    Volumes are left out, unless nothing else is wanted.
-    """
-    short = [wish for wish in task.wanted if wish.of != "volume"]
-    if not short:
-        return task
-    wishes = {(w.index, "worst" if w.of == "proven worst" else w.of): w for w in short}
-    wanted = [replace(wish, of=of) for (_, of), wish in wishes.items()]
-    return replace(task, wanted=wanted, resolution=None)
 
 
 def attempted(part: Any) -> tuple[Any, str]:

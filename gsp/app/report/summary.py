@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from gsp.app.page.tables import number
@@ -13,8 +15,39 @@ from gsp.rounding import rounded_down, rounded_up
 
 def summary(study: Study) -> list[str]:
     """Return the sentences, the verdict first; what was not computed is left out."""
-    parts = (usable, proven, forces, compared)
+    parts = (met, usable, proven, forces, compared)
     return [text for part in parts if (text := attempted(lambda p=part: p(study))[0])]
+
+
+def met(study: Study) -> str:
+    """Return which poses of the task the design cannot do; of single poses also that it can all."""
+    if study.task is None:
+        return ""
+    single, n, within = isinstance(study.task.poses, Pose), study.poses.size, study.within
+    what = "poses of the task" if single else "sampled poses of the task"
+    texts = []
+    if within is not None and not within:
+        out, left = np.flatnonzero(~within.ok), int(within.ok.sum())
+        some = f"Only {left} of the {n} {what} {'is' if left == 1 else 'are'} within the limits"
+        none = f"None of the {n} {what} is within the limits"
+        head = some if left else none if n > 1 else "The pose of the task is not within the limits"
+        first, *more = study.violation(int(out[0])).split("; ")
+        more_text = f", and {len(more)} more" if more else ""
+        texts.append(f"{head}. At {_at(study, out[0])}: {first}{more_text}.")
+    bad = np.flatnonzero(study.unusable != "")
+    if bad.size:
+        some = f"{bad.size} of the {n} {what}" if n > 1 else "the pose of the task"
+        where, why = _at(study, bad[0]), study.unusable[bad[0]]
+        texts.append(f"The design cannot be used at {some}. At {where}: {why}.")
+    if single and not texts:
+        each = f"all {n} poses of the task" if n > 1 else "the pose of the task"
+        limits = "" if within is None else ", and all limits are satisfied"
+        texts.append(f"At {each} the actuators control all motions of the platform{limits}.")
+    return " ".join(texts)
+
+
+def _at(study: Study, i: Any) -> str:
+    return place_text(study.poses[int(i)], study.state.design.unit, study.state.size)
 
 
 def usable(study: Study) -> str:
@@ -90,6 +123,11 @@ def compared(study: Study) -> str:
 def place_text(pose: Pose, unit: str, size: float) -> str:
     """Return a pose in words, with true minus signs, and six digits of a size."""
     return pose_text(pose, unit, size).replace("-", "−")
+
+
+def bracket(low: float, high: float) -> str:
+    """Return two proven ends."""
+    return f"between {number(rounded_down(low, 4))} and {number(rounded_up(high, 4))}"
 
 
 def measured(value: float, unit: str, digits: int = 3) -> str:
