@@ -26,6 +26,9 @@ OTHER_COLUMNS = {
     **{f"{name}_{end}": "higher" for name in WORKSPACES for end in (LOW, HIGH)},
 }
 
+# Differences of numbers up to this size are finite.
+MOST_DIFFERENT = 0.25 * float(np.finfo(np.float64).max)
+
 Objectives = Mapping[str, str] | Sequence[str]
 
 
@@ -104,7 +107,7 @@ def knee(table: pd.DataFrame, objectives: Objectives) -> Any:
     >>> knee(front, {"x": "higher", "y": "higher"})
     'b'
     """
-    values = merits_of(table, objectives)
+    values = _halved(merits_of(table, objectives))[0]
     there = np.flatnonzero(np.isfinite(values).all(axis=1))
     heights = ((values[there] - _complete(values).min(axis=0)) / _spans(values)).sum(axis=1)
     return table.index[int(there[heights.argmax()])]
@@ -116,7 +119,8 @@ def distances(
     """Return how far the rows of a front are from a wish.
 
     Objectives are scaled by their ranges over the rows where all are finite. The distance is the
-    Euclidean norm of what is missing: a value that is better than wished counts as 0.
+    Euclidean norm of what is missing: a value that is better than wished counts as 0, and so does
+    an objective whose range is 0, as nothing scales it.
 
     Parameters
     ----------
@@ -127,7 +131,8 @@ def distances(
     Returns
     -------
     pandas.Series
-        One distance ≥ 0 per row [1]; NaN where an objective is missing.
+        One distance ≥ 0 per row [1]; NaN where an objective is missing, inf where one is infinitely
+        bad.
 
     Raises
     ------
@@ -154,15 +159,21 @@ def distances(
         arguments.number(f"wish[{name!r}]", given[name]) * (1.0 if side == "higher" else -1.0)
         for name, side in sides.items()
     ])  # fmt: skip
-    missing = np.maximum(target - values, 0.0) / _spans(values)
-    return pd.Series(np.sqrt((missing**2).sum(axis=1)), index=table.index, name="distance")
+    values, target = _halved(values, target)
+    spans = np.ptp(_complete(values), axis=0)
+    with np.errstate(over="ignore"):  # inf: farther than all numbers
+        missing = np.maximum(target - values, 0.0) / _spans(values)
+        missing[:, spans == 0.0] = np.where(np.isfinite(missing), 0.0, missing)[:, spans == 0.0]
+        found = np.sqrt((missing**2).sum(axis=1))
+    return pd.Series(found, index=table.index, name="distance")
 
 
 def losses(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
     """Return what each step along a front gains and loses.
 
     Rows are sorted from the best to the worst value of the first objective; a step goes from a row
-    to the next one.
+    to the next one. Rows with a missing objective are left out. A change from or to an infinite
+    value is infinite, and NaN between two that are equal.
 
     Parameters
     ----------
@@ -195,7 +206,9 @@ def losses(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
     places = there[np.argsort(-values[there, 0], kind="stable")]
     labels = table.index[places]
     steps = pd.DataFrame({"from": labels[:-1], "to": labels[1:]})
-    for name, change in zip(sides, np.diff(values[places], axis=0).T, strict=True):
+    with np.errstate(invalid="ignore", over="ignore"):  # inf − inf, and steps beyond all numbers
+        changes = np.diff(values[places], axis=0).T
+    for name, change in zip(sides, changes, strict=True):
         steps[name] = change
     return steps
 
@@ -263,6 +276,22 @@ def _complete(values: Array) -> Array:
     if not len(rows):
         raise InvalidInput(expected("table", "a row with all objectives", "none"))
     return rows
+
+
+def _halved(values: Array, other: Array | float = 0.0) -> tuple[Array, Array]:
+    """Return columns divided by powers of two, so that differences of finite numbers are finite.
+
+    Columns of ordinary numbers are left as they are.
+
+    Parameters
+    ----------
+    values : (n, m) array
+    other : (m,) array
+        Divided by the same powers.
+    """
+    sizes = np.where(np.isfinite(values), np.abs(values), 0.0).max(axis=0, initial=0.0)
+    powers = np.where(np.maximum(sizes, np.abs(other)) > MOST_DIFFERENT, 0.25, 1.0)
+    return values * powers, other * powers
 
 
 def _spans(values: Array) -> Array:

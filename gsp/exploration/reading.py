@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike
 
 from gsp.checks import plain_text
-from gsp.errors import InvalidInput, MalformedFile, UnknownIndex
+from gsp.errors import InvalidInput, UnknownIndex
 from gsp.exploration.space import Space
 from gsp.exploration.space_reading import space_from_toml
 from gsp.exploration.task import Task, Wanted
@@ -53,13 +53,18 @@ def read_task(path: str | PathLike[str]) -> Task:
     """
     path = plain_text(path)
     text = read_text(path, most=BYTES_PER_TASK)
-    origin = str(path)
-    given = TaskReader(text, origin).arguments()
+    reader = TaskReader(text, str(path))
+    given = reader.arguments()
+    wanted = []
+    for number, wish in enumerate(given.pop("wanted")):
+        try:
+            wanted.append(Wanted(**wish))
+        except (InvalidInput, UnknownIndex) as error:
+            reader.fail_of_wanted(error, number)
     try:
-        wanted = [Wanted(**wish) for wish in given.pop("wanted")]
         return Task(wanted=wanted, **given)
     except (InvalidInput, UnknownIndex) as error:
-        raise MalformedFile(f"{origin}: {error}") from error
+        reader.fail_of_task(error)
 
 
 def read_space(path: str | PathLike[str]) -> Space:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any, NoReturn
@@ -148,6 +149,31 @@ class TaskReader:
         if "limits" in data:
             result["limits"] = self._made("limits", self._limits)
         return result
+
+    def fail_of_wanted(self, error: Exception, number: int) -> NoReturn:
+        """Raise the error of the number-th thing that is wanted with the line of its key.
+
+        Raises
+        ------
+        MalformedFile
+        """
+        found = re.match(r"wanted\.(\w+)", str(error))
+        self._fail(str(error), found[1] if found else "index", "wanted", number)
+
+    def fail_of_task(self, error: Exception) -> NoReturn:
+        """Raise the error of an argument of a task with the line of its key or table.
+
+        Raises
+        ------
+        MalformedFile
+        """
+        found = re.match(r"task\.(\w+)", str(error))
+        key = found[1] if found else ""
+        if key == "poses":
+            key = next(key for key in _POSES if key in self.data)
+        if key not in self.data:
+            raise MalformedFile(f"{self.origin}: {error}") from error
+        self._fail(str(error), key)
 
     def _fail(self, message: str, key: str, table: str = "", number: int = 0) -> NoReturn:
         line = line_of(self.lines, key, table, number)

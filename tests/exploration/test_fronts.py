@@ -9,6 +9,8 @@ from gsp.exploration import distances, knee, losses, pareto
 
 SIDES = {"cost": "lower", "reach": "higher", "speed": "higher"}
 
+BETTER = {"x": "higher", "y": "higher"}
+
 
 def beats(one, other):
     better = [one["cost"] <= other["cost"], one["reach"] >= other["reach"],
@@ -72,6 +74,34 @@ def test_losses_are_signed_by_what_is_better():
     assert steps.to_dict("list") == {
         "from": [0, 2], "to": [2, 1], "x": [-1.0, -1.0], "y": [5.0, 3.0],
     }  # fmt: skip
+
+
+def test_losses_with_infinite_and_missing_values():
+    """Warnings are errors in all tests."""
+    rows = {"x": [np.inf, np.inf, 1.0, np.nan, -1.5e308], "y": [1.0, 2.0, -np.inf, 0.0, 1.5e308]}
+    steps = losses(pd.DataFrame(rows), BETTER)
+    assert steps[["from", "to"]].to_numpy().tolist() == [[0, 1], [1, 2], [2, 4]]
+    assert steps["x"].fillna(7.0).tolist() == [7.0, -np.inf, -1.5e308]
+    assert steps["y"].tolist() == [1.0, -np.inf, np.inf]
+
+
+def test_knee_and_distances_of_the_greatest_numbers():
+    """Those of a table divided by a power of two."""
+    front = pd.DataFrame({"x": [-1.0, 0.6, 1.0], "y": [1.0, 0.5, -1.0]})
+    large = front * 2.0**1023
+    assert knee(large, BETTER) == knee(front, BETTER) == 1
+    wish = {"x": 0.0, "y": 0.0}
+    np.testing.assert_array_equal(distances(large, BETTER, wish), distances(front, BETTER, wish))
+    small = front * 2.0**-1000
+    assert np.isinf(distances(small, BETTER, {"x": 1e100, "y": 0.0})).all()
+
+
+def test_an_objective_without_a_range_has_no_distance():
+    table = pd.DataFrame({"x": [0.0, 0.5, 1.0, 1.0], "y": [3.0, 3.0, 3.0, np.nan]})
+    found = distances(table, BETTER, {"x": 1.0, "y": 1000.0})
+    assert found.fillna(9.0).tolist() == [1.0, 0.5, 0.0, 9.0]
+    table.loc[3, "y"] = -np.inf
+    assert distances(table, BETTER, {"x": 1.0, "y": 1000.0})[3] == np.inf
 
 
 @pytest.mark.parametrize(

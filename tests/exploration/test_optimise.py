@@ -1,5 +1,7 @@
 """Optimisation: known optima, bounds, mixed spaces, fronts, resumption, bad input."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -348,6 +350,45 @@ def test_a_length_of_the_design_may_be_a_parameter():
     assert still.loc["condition_number_mean", "size"] == pytest.approx(0.0, abs=1e-12)
 
 
+# --- nothing to return ---
+
+
+def coincident(x):
+    """Without values below x = 0.5, where the anchor points of the legs coincide."""
+    points = gsp.hexapod(1.0, 0.3, 0.7, 0.5, 1.0).platform_points
+    moved = points if x < 0.5 else points * x + [0.0, 0.0, 1.0]
+    return gsp.Design(legs=["D1"] * 6, base_points=points, platform_points=moved)
+
+
+ORIGIN = gsp.Task(poses=gsp.Pose([[0.0, 0.0, 0.0]]), wanted=["mean CTN", "mean CDN_CL"], length=0.7)
+
+
+@pytest.mark.parametrize("method", ["gradient", "evolution", "front"])
+def test_designs_without_values_are_never_the_best(method):
+    if method == "front":
+        pytest.importorskip("pymoo")
+    low, all_x = (gsp.Space(coincident, {"x": (0.1, top)}) for top in (0.4, 0.9))
+    message = r"undefined for all \d+ designs; mean CTN and mean CDN_CL of the first, .*coincide"
+    with pytest.raises(InvalidInput, match=message):
+        optimise(low, ORIGIN, method=method, evaluations=8)
+    table = optimise(all_x, ORIGIN, method=method, evaluations=8)
+    assert table[["score", "control_number_mean", "condition_number_mean"]].notna().all(axis=None)
+
+
+def test_the_nearest_design_says_what_it_misses():
+    limits = gsp.Limits(strokes=[[50.0, 60.0]] * 6, leg_radius=1e-3)  # no climb
+    space = gsp.Space(coincident, {"x": (0.6, 0.9)})
+    task = gsp.Task(poses=ORIGIN.poses, wanted="mean CTN", limits=limits, length=0.7)
+    with pytest.raises(InvalidInput) as error:
+        optimise(space, task, method="evolution", evaluations=5)
+    found = re.search(r"'x': (\S+)}: 0 % .*, of 100 % .*: d\d = (\S+) < 50 at", str(error.value))
+    design = coincident(float(found[1]))
+    legs = np.linalg.norm(design.platform_points - design.base_points, axis=1)
+    assert float(found[2]) == pytest.approx(legs.min(), rel=1e-5)
+    with pytest.raises(InvalidInput, match="no pose is within the limits"):
+        optimise(space, task, method="evolution", evaluations=5, feasible=0.0)
+
+
 # --- bad input ---
 
 
@@ -364,7 +405,10 @@ def test_a_length_of_the_design_may_be_a_parameter():
         ({"require": [0.2]}, "require: expected"),
         ({"method": "gradient", "certify": True}, "certificates have no gradient"),
         ({"method": "gradient", "require": {"proven worst CTN": 0.1}}, "means and worst values"),
-        ({"require": {"worst CTN": 0.99}, "evaluations": 2, "starts": 1}, "none; the nearest is"),
+        (
+            {"require": {"worst CTN": 0.99}, "evaluations": 2, "starts": 1},
+            r"none; the nearest is .*}: worst CTN is 0\.\d+, at least 0.99 is required",
+        ),
         ({"resume": True}, "resume: expected"),
     ],
 )

@@ -168,6 +168,16 @@ def test_a_value_that_does_not_change_has_no_indices():
     assert table[["first", "total"]].isna().all(axis=None)
 
 
+@pytest.mark.usefixtures("salib")
+def test_a_value_that_differs_by_rounding_has_no_indices():
+    """No scale of both bodies changes CTN, and |det J| is proportional to its third power."""
+    space = gsp.Space(lambda k: RAISED.scaled(k), {"k": (0.5, 2.0)})
+    task = gsp.Task(poses=gsp.Pose([[0.0, 0.0, 0.0]]), wanted=["mean CTN", "mean |det J|"])
+    table = sobol_indices(space, task, 8).set_index("wanted")
+    assert table.loc["control_number_mean", ["first", "total"]].isna().all()
+    assert table.loc["manipulability_mean", ["first", "total"]].notna().all()
+
+
 def failing(k):
     return gsp.hexapod(2.0, 0.3, 1.0 if k > 0.5 else -1.0, 0.4, 1.5)
 

@@ -21,7 +21,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, expected
 from gsp.exploration import (
     Deviations,
     IndexTolerance,
@@ -96,6 +96,9 @@ def tolerance(
     if out is not None:
         check_table(out, overwrite=force)
     found = find_design(design)
+    if not any((base, platform, base_lines, platform_lines, joints)):
+        options = "--base, --platform, --base-lines, --platform-lines and --joints"
+        raise InvalidInput(expected("gsp tolerance", f"an error > 0 by one of {options}", "none"))
     errors = Deviations(
         base_points=base,
         platform_points=platform,

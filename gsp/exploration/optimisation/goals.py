@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gsp import arguments
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.exploration.task import Task, Wanted, wanted_value
 from gsp.geometry.vectors import Array
 from gsp.ranking.restrictions import FEASIBLE
@@ -56,6 +56,22 @@ class Goals:
     def merits(self, row: Mapping[str, Any]) -> Array:
         """Return the logarithms of what is wanted, negative where lower is better, (m,)."""
         return np.array([_merit(wish, row) for wish in self.task.wanted])
+
+    def without_value(self, row: Mapping[str, Any]) -> list[str]:
+        """Return what is wanted and undefined in a row, such as "worst CTN"."""
+        wanted = self.task.wanted
+        return [w.label for w in wanted if np.isnan(float(row.get(w.column, np.nan)))]
+
+    def missed(self, row: Mapping[str, Any]) -> list[str]:
+        """Return which bounds a row violates: what it has, and what is required."""
+        texts = []
+        for wish, bound in self.bounds:
+            value = float(row.get(wish.column, np.nan))
+            if merit(wish, bound) > merit(wish, value):
+                got, wanted = apart(value, bound)
+                most = "at least" if wish.better == "higher" else "at most"
+                texts.append(f"{wish.label} is {got}, {most} {wanted} is required")
+        return texts
 
     def shortfall(self, row: Mapping[str, Any]) -> float:
         """Return by how much a row violates the bounds, 0 if it does not, without certificates.

@@ -18,6 +18,7 @@ from gsp.exploration.exploring import designs_of
 from gsp.exploration.fronts import nondominated
 from gsp.exploration.optimisation.climbing import climbed, why_not_climb
 from gsp.exploration.optimisation.evaluating import Evaluator
+from gsp.exploration.optimisation.failures import none_has_value, none_meets
 from gsp.exploration.optimisation.goals import Goals, read_bounds
 from gsp.exploration.optimisation.jobs import Job
 from gsp.exploration.optimisation.populations import evolve, spread, unit_sample
@@ -109,16 +110,17 @@ def optimise(
     Returns
     -------
     pandas.DataFrame
-        Designs that satisfy all bounds and that no other found design beats: the best one, or the
-        front. Columns as of `gsp.exploration.explore`. `attrs` holds space, task, bounds, method,
-        seed, version and the number of designs evaluated. Neither method proves that there is no
-        better design.
+        Designs that satisfy all bounds, have all values that are wanted, and that no other found
+        design beats: the best one, or the front. Columns as of `gsp.exploration.explore`. `attrs`
+        holds space, task, bounds, method, seed, version and the number of designs evaluated.
+        Neither method proves that there is no better design.
 
     Raises
     ------
     InvalidInput
-        On arguments of a wrong type or value, a method that the task does not allow, or if no
-        design that was found satisfies all bounds; the message has the nearest one.
+        On arguments of a wrong type or value, a method that the task does not allow, if no design
+        that was found satisfies all bounds (the message has the nearest one, and what it misses),
+        or if something that is wanted is undefined for all that do.
     UnknownIndex, MissingParameter
         On parameters that an index needs.
     MissingSoftware
@@ -209,7 +211,7 @@ def order(evaluator: Evaluator) -> list[int]:
 
 
 def best_designs(evaluator: Evaluator, facts: dict[str, Any]) -> pd.DataFrame:
-    """Return the designs that satisfy all bounds and that no other one beats.
+    """Return the designs that satisfy all bounds, have values, and that no other one beats.
 
     Raises
     ------
@@ -221,9 +223,10 @@ def best_designs(evaluator: Evaluator, facts: dict[str, Any]) -> pd.DataFrame:
     goals, rows, ranking = evaluator.goals, evaluator.rows, order(evaluator)
     accepted = [i for i in ranking if goals.violation(rows[i]) == 0.0]
     if not accepted:
-        nearest = {name: rows[ranking[0]].get(name) for name in evaluator.space.names}
-        wanted = f"a space and bounds that a design of {len(rows)} satisfies"
-        raise InvalidInput(expected("optimise", wanted, f"none; the nearest is {nearest}"))
+        raise InvalidInput(none_meets(evaluator, ranking[0]))
+    accepted = [i for i in accepted if not goals.without_value(rows[i])]
+    if not accepted:
+        raise InvalidInput(none_has_value(evaluator))
     if facts["method"] == "front":
         merits = np.array([goals.merits(rows[i]) for i in accepted])
         chosen = [i for i, kept in zip(accepted, nondominated(merits), strict=True) if kept]

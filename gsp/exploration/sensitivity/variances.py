@@ -25,6 +25,9 @@ from gsp.version import __version__
 if TYPE_CHECKING:
     import pandas as pd
 
+# Values whose range is at most this share of the greatest magnitude differ by rounding alone.
+SAME_VALUE = 1e-12
+
 
 @arguments.validated(
     space=arguments.kind(Space, "a gsp.Space"),
@@ -73,7 +76,8 @@ def sobol_indices(
     pandas.DataFrame
         One row per wanted value and parameter: wanted, parameter, first, first_confidence, total,
         total_confidence [1]; confidences are half widths. NaN where the value is the same for
-        all designs. `attrs` has space, task, seed, n, designs, confidence, call and version.
+        all designs: where its range is at most 1e-12 of its greatest magnitude, which is rounding.
+        `attrs` has space, task, seed, n, designs, confidence, call and version.
 
     Raises
     ------
@@ -115,7 +119,7 @@ def sobol_indices(
         one: dict[str, Any] = {"wanted": wish.column, "parameter": list(space.ranges)}
         options = {"num_resamples": resamples, "conf_level": confidence, "seed": seed}
         columns = dict.fromkeys(("S1", "S1_conf", "ST", "ST_conf"), np.nan)
-        if np.ptp(values) > 0.0:
+        if np.ptp(values) > SAME_VALUE * np.abs(values).max():
             columns = analysis.analyze(problem, values, calc_second_order=False, **options)
         one |= {"first": columns["S1"], "first_confidence": columns["S1_conf"]}
         one |= {"total": columns["ST"], "total_confidence": columns["ST_conf"]}
