@@ -214,7 +214,8 @@ def marks(table: pd.DataFrame) -> list[Line2D]:
 
 
 def _best(table: pd.DataFrame) -> int:
-    return int(table["rank"].to_numpy().argmin())
+    # Designs without a score have no rank.
+    return int(np.nan_to_num(column(table, "rank"), nan=np.inf).argmin())
 
 
 def values_of(table: pd.DataFrame, name: str) -> Array:

@@ -11,7 +11,7 @@ from scipy.stats import spearmanr
 import gsp
 from gsp.errors import InvalidInput, MissingSoftware
 from gsp.indices import INDICES
-from gsp.plots import against, ranges, ranking
+from gsp.plots import against, panels, ranges, ranking
 from gsp.plots.common.style import CLASSES, save_figure
 from gsp.plots.rankings import first_names
 from tests import campaign
@@ -255,6 +255,12 @@ def test_unnamed_and_long_names_have_short_labels(table):
     assert (first, third) == ("unnamed, rank 1", "mine")
     assert max(map(len, second.split("\n"))) <= 26
     assert second.count("\n") == 1
+
+
+def test_a_design_without_a_rank_is_not_the_first(table):
+    few = table.head(3).copy()
+    few["rank"] = [np.nan, 2.0, 1.0]
+    assert panels._best(few) == 2
 
 
 @pytest.mark.parametrize("wrong", [np.zeros(2), pd.Series([1, 2]), 3, None, ["rank"]])

@@ -17,7 +17,7 @@ from gsp.model.units import power_base
 
 # Rows of the table of single poses, those first at which the design cannot be used; and the best
 # designs that are listed.
-MOST_POSES, BEST = 40, 5
+MOST_POSES, MOST_DESIGNS = 40, 5
 
 
 def at_each(study: Study) -> str:
@@ -97,7 +97,7 @@ def _places(study: Study) -> str:
             number(float(ranked["score"][i]), 4),
             *(number(float(ranked[column][i]), 4) for column in columns),
         )
-        for i in sorted({*range(min(BEST, some)), here})
+        for i in sorted({*range(min(MOST_DESIGNS, some)), here})
     ]
     notes = []
     if some < len(ranked):

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 # Values whose range is at most this share of the greatest magnitude differ by rounding alone.
-SAME_VALUE = 1e-12
+SAME_VALUE_SHARE = 1e-12
 
 
 @arguments.validated(
@@ -119,7 +119,7 @@ def sobol_indices(
         one: dict[str, Any] = {"wanted": wish.column, "parameter": list(space.ranges)}
         options = {"num_resamples": resamples, "conf_level": confidence, "seed": seed}
         columns = dict.fromkeys(("S1", "S1_conf", "ST", "ST_conf"), np.nan)
-        if np.ptp(values) > SAME_VALUE * np.abs(values).max():
+        if np.ptp(values) > SAME_VALUE_SHARE * np.abs(values).max():
             columns = analysis.analyze(problem, values, calc_second_order=False, **options)
         one |= {"first": columns["S1"], "first_confidence": columns["S1_conf"]}
         one |= {"total": columns["ST"], "total_confidence": columns["ST_conf"]}
