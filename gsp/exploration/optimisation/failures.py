@@ -58,7 +58,7 @@ def _worst_violation(evaluator: Evaluator, design: Design, limits: Limits) -> st
     passed = np.where(found.violated, np.where(np.isnan(passed), np.inf, passed), -1.0)
     i, quantity, side = np.unravel_index(int(passed.argmax()), passed.shape)
     value, name = float(found.values[i, quantity]), found.names[quantity]
-    where = pose_text(poses[int(i)], design.unit)
+    where = pose_text(poses[int(i)], design.unit, design.rms_radius)
     if np.isnan(value):
         return f" ({name} is not defined at {where})"
     got, bound = apart(value, float(bounds[quantity, side]))
