@@ -7,8 +7,8 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decima
 
 # A value that differs less from a number with few digits [share of it] is that number: rounding.
 SHORT_WITHIN = 1e-15
-# Significant digits of a number in double precision.
-MOST_DIGITS = 15
+# At most so many: more of a number in double precision are rounding.
+COORDINATE_DIGITS = 15
 
 
 def digits_within(value: float, size: float, digits: int = 6) -> int:
@@ -19,7 +19,7 @@ def digits_within(value: float, size: float, digits: int = 6) -> int:
     """
     ratio = abs(value) / size if size > 0.0 else 0.0
     more = math.ceil(math.log10(ratio)) if 1.0 < ratio < math.inf else 0
-    return min(digits + more, MOST_DIGITS)
+    return min(digits + more, COORDINATE_DIGITS)
 
 
 def rounded_down(value: float, digits: int) -> float:

@@ -10,9 +10,18 @@ from nicegui import ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
+from gsp.app.page.panels.axes import (
+    GRID,
+    cells,
+    coordinate,
+    power_of_ten,
+    scaled,
+    texts,
+    with_power,
+)
 from gsp.app.page.panels.contours import contour, label_place, round_levels
 from gsp.app.state import curves
-from gsp.app.state.reading import RAISED, missing_words
+from gsp.app.state.reading import missing_words
 from gsp.errors import GspError
 from gsp.figures.gaps import gap_words
 from gsp.geometry.vectors import Array
@@ -23,10 +32,6 @@ SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
 MARK_DIGITS = 20
 # The margins of the map [px]: style.css makes what is between them a square.
 MAP_MARGINS = {"left": 80, "right": 80, "top": 16, "bottom": 44}
-# ECharts would make the room smaller where numbers are long.
-GRID = {"outerBoundsMode": "none"}
-# Powers of ten that numbers on axes have in full.
-LEAST_POWER, MOST_POWER = -3, 5
 BLUE, VERMILION, INK = "#0072B2", "#D55E00", "#1F2933"
 
 
@@ -80,8 +85,8 @@ def plot_names(index: str, motion: str, plane: str) -> tuple[str, str]:
 
 def curve_options(curve: curves.Curve) -> dict[str, Any]:
     """Return the plot of an index along a motion, with a line at the present pose."""
-    places, axis = _scaled(curve.places, curve.axis)
-    values, label = _scaled(curve.values, curve.label)
+    places, axis = scaled(curve.places, curve.axis)
+    values, label = scaled(curve.values, curve.label)
     points = [[x, y] for x, y in zip(places.tolist(), _finite(values), strict=True)]
     here = curve.here / 10.0 ** power_of_ten(curve.places)
     return {
@@ -122,7 +127,7 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
     """Return the map of an index over a plane of positions, with contours and their labels."""
     values = _finite(plot.values.ravel())
     size = len(plot.second)
-    (first, across), (second, up) = map(_scaled, (plot.first, plot.second), plot.axes)
+    (first, across), (second, up) = map(scaled, (plot.first, plot.second), plot.axes)
     data = [[k // size, k % size, v] for k, v in enumerate(values) if v is not None]
     known = np.array([v for v in values if v is not None] or [0.0, 1.0])
     # A few values near singular poses would take the whole range of colours.
@@ -137,10 +142,10 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
         "grid": MAP_MARGINS | GRID,
         "tooltip": {
             "confine": True,
-            ":formatter": _tooltip([across, up, plot.index.symbol], _texts(first), _texts(second)),
+            ":formatter": _tooltip([across, up, plot.index.symbol], texts(first), texts(second)),
         },
-        "xAxis": [_cells(first), _coordinate(first, across, "bottom", 28)],
-        "yAxis": [_cells(second), _coordinate(second, up, "left", 62)],
+        "xAxis": [cells(first), coordinate(first, across, "bottom", 28)],
+        "yAxis": [cells(second), coordinate(second, up, "left", 62)],
         "visualMap": {
             "show": bool(data),
             "seriesIndex": 0,
@@ -178,36 +183,6 @@ def _range_words(symbol: str, known: Array, low: float, high: float) -> list[str
     top, bottom = (tables.number(x / 10.0**power, 3) for x in (high, low))
     name = with_power(symbol, power).replace(" [", "\n[")
     return [f"{name}\n{above}{top}", f"{below}{bottom}"]
-
-
-def power_of_ten(values: Array) -> int:
-    """Return the power of ten that the numbers of an axis leave out, 0 where they need none.
-
-    >>> power_of_ten(np.array([2e-7, -3e-6])), power_of_ten(np.array([0.1, 2.0]))
-    (-6, 0)
-    """
-    known = np.abs(values[np.isfinite(values)])
-    power = int(np.floor(np.log10(known.max()))) if known.any() else 0
-    return 0 if LEAST_POWER <= power < MOST_POWER else power
-
-
-def with_power(label: str, power: int) -> str:
-    """Return a label, with its unit in brackets if there is one, with a power of ten.
-
-    >>> with_power("x [m]", -6), with_power("GCI", 7), with_power("CTN", 0)
-    ('x [10⁻⁶ m]', 'GCI [10⁷]', 'CTN')
-    """
-    if power == 0:
-        return label
-    name, bracket, unit = label.partition(" [")
-    factor = f"10{str(power).translate(RAISED)}"
-    return f"{name} [{factor} {unit}" if bracket else f"{name} [{factor}]"
-
-
-def _scaled(values: Array, label: str) -> tuple[Array, str]:
-    """Return the numbers and the label of an axis."""
-    power = power_of_ten(values)
-    return values / 10.0**power, with_power(label, power)
 
 
 def _tooltip(names: list[str], first: list[str], second: list[str]) -> str:
@@ -261,35 +236,6 @@ def _coordinates(first: Array, second: Array, steps: Array) -> list[Any]:
     places = 3 - int(np.floor(np.log10(step.min())))
     found: list[Any] = np.round(start + steps * step, places).tolist()
     return found
-
-
-def _cells(values: Array) -> dict[str, Any]:
-    """Return the axis of the cells, which has no marks: they would be at odd numbers."""
-    return {"type": "category", "data": _texts(values), "show": False}
-
-
-def _texts(values: Array) -> list[str]:
-    """Return numbers at equal distances with the digits that tell them apart."""
-    places = max(1 - int(np.floor(np.log10(values[1] - values[0]))), 0)
-    return [f"{x + 0.0:.{places}f}" for x in values]
-
-
-def _coordinate(values: Array, name: str, position: str, gap: int) -> dict[str, Any]:
-    """Return the axis of coordinates around the cells; its marks are at round numbers."""
-    half = 0.5 * float(values[1] - values[0])
-    return {
-        "type": "value",
-        "min": float(values[0]) - half,
-        "max": float(values[-1]) + half,
-        "position": position,
-        "name": name,
-        "nameLocation": "middle",
-        "nameGap": gap,
-        "splitLine": {"show": False},
-        "axisLabel": {"hideOverlap": True, "showMinLabel": False, "showMaxLabel": False},
-        "axisTick": {"show": True},
-        "axisLine": {"show": True, "onZero": False},
-    }
 
 
 def _undrawable(symbol: str, values: Array) -> dict[str, Any]:
