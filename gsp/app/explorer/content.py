@@ -40,7 +40,7 @@ def content(
     front, knee = front_rows(table, objectives)
     lines = parallel_lines(table, columns, by)
     names, axes = list(table.columns), list(sides)
-    order = _ordered(table, [*sides, by, *columns])
+    order = _ordered(table, [*sides, by, *lines.names])
     return {
         "columns": [_column(table, name, sides) for name in names],
         "names": _names(table),
