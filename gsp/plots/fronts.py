@@ -149,6 +149,7 @@ def parallel(
     MissingSoftware
         Without matplotlib.
     """
+    by = arguments.text("by", by)
     lines = parallel_lines(table, columns, by)
     shades = column(table, by)[lines.rows]
     with style():
