@@ -107,7 +107,7 @@ def knee(table: pd.DataFrame, objectives: Objectives) -> Any:
     >>> knee(front, {"x": "higher", "y": "higher"})
     'b'
     """
-    values = _halved(merits_of(table, objectives))[0]
+    values = _shrunk(merits_of(table, objectives))[0]
     there = np.flatnonzero(np.isfinite(values).all(axis=1))
     heights = ((values[there] - _complete(values).min(axis=0)) / _spans(values)).sum(axis=1)
     return table.index[int(there[heights.argmax()])]
@@ -159,7 +159,7 @@ def distances(
         arguments.number(f"wish[{name!r}]", given[name]) * (1.0 if side == "higher" else -1.0)
         for name, side in sides.items()
     ])  # fmt: skip
-    values, target = _halved(values, target)
+    values, target = _shrunk(values, target)
     spans = np.ptp(_complete(values), axis=0)
     with np.errstate(over="ignore"):  # inf: farther than all numbers
         missing = np.maximum(target - values, 0.0) / _spans(values)
@@ -278,7 +278,7 @@ def _complete(values: Array) -> Array:
     return rows
 
 
-def _halved(values: Array, other: Array | float = 0.0) -> tuple[Array, Array]:
+def _shrunk(values: Array, other: Array | float = 0.0) -> tuple[Array, Array]:
     """Return columns divided by powers of two, so that differences of finite numbers are finite.
 
     Columns of ordinary numbers are left as they are.

@@ -418,14 +418,13 @@ def summary_text(study):
 
 def test_a_design_with_more_legs_is_counted_among_the_others():
     """Its mechanism is none of the 195."""
-    angle = np.arange(7) * 2.0 * np.pi / 7.0
-    ring = np.stack((np.cos(angle), np.sin(angle), 0.0 * angle), axis=1)
-    turned = ring @ np.asarray(gsp.Pose.from_rpy([0, 0, 0], [0, 0, 0.5]).rotation).T
-    design = gsp.Design(["D1"] * 7, 2.0 * ring, turned, home=gsp.Pose([0.0, 0.1, 1.5]))
+    rng = np.random.default_rng(7)
+    base, top = rng.uniform(-2.0, 2.0, (7, 3)), rng.uniform(-1.0, 1.0, (7, 3))
+    design = gsp.Design(["D1"] * 7, base, top, home=gsp.Pose([0.0, 0.1, 1.5]))
     found = study_of(design, None, None, None)
     place = found.places["control_number"]
-    if place is not None:
-        assert place.total == len(found.others) + 1
+    assert place is not None
+    assert place.total == len(found.others) + 1
     found.__dict__["distance"] = type("", (), {"upper": np.inf, "lower": 1.0})()
     assert "a singular pose none was found" in " ".join(
         text_of(page.proofs.singularity(found)).split()

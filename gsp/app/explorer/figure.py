@@ -50,13 +50,13 @@ def explorer_figure(
     table: pd.DataFrame,
     objectives: Objectives,
     *,
-    designs: Space | Sequence[Design] | None = None,
-    columns: Sequence[str] | None = None,
-    by: str | None = None,
-    pose: Pose | None = None,
-    most: int = 1000,
+    designs: Space | Sequence[Design] | None,
+    columns: Sequence[str] | None,
+    by: str | None,
+    pose: Pose | None,
+    most: int,
 ) -> ExplorerFigure:
-    """Return the page; see `gsp.plots.explorer`."""
+    """Return the page; `gsp.plots.explorer` has the arguments and their defaults."""
     check_frame("table", table)
     sides = better_sides(table, objectives)
     by = arguments.text("by", by) if by is not None else _shades(table, sides)
