@@ -17,6 +17,8 @@ FLAGS = (
     "--disable-gpu-compositing", "--hide-scrollbars", "--no-first-run", "--remote-debugging-port=0",
     "about:blank",
 )  # fmt: skip
+# How long to wait for what is to happen soon [s]; a busy machine needs many times as long.
+PATIENCE = 90.0
 # Dots that are rendered for a pixel of the layout.
 DOTS = 0.4
 
@@ -41,7 +43,7 @@ COLOURS = """new Promise(done => requestAnimationFrame(() => {
 MIDDLE = """async function () {
   this.addEventListener("click", () => (this.wasClicked = true), { capture: true, once: true });
   let before = null;
-  for (const end = Date.now() + 20000; Date.now() < end;) {
+  for (const end = Date.now() + 60000; Date.now() < end;) {
     this.scrollIntoViewIfNeeded();
     const { x, y, width, height } = this.getBoundingClientRect();
     const place = [x + width / 2, y + height / 2], hit = document.elementFromPoint(...place);
@@ -89,7 +91,7 @@ class Tab:
             elif word["method"] == "Log.entryAdded" and word["params"]["entry"]["level"] == "error":
                 self.errors.append(json.dumps(word["params"]["entry"])[:500])
 
-    async def send(self, method, *, seconds=30.0, **parameters):
+    async def send(self, method, *, seconds=PATIENCE, **parameters):
         self.number += 1
         self.answers[self.number] = future = asyncio.get_running_loop().create_future()
         message = {"id": self.number, "method": method, "params": parameters}
@@ -121,7 +123,7 @@ class Tab:
         classes = "[class*=-enter-active], [class*=-leave-active]"
         await self.until(f"!{moving} && !document.querySelector('{classes}')")
 
-    async def until(self, script, seconds=30.0):
+    async def until(self, script, seconds=PATIENCE):
         """Wait until a script has a value that counts as true, and return it."""
         for _ in range(int(seconds / 0.05)):
             value = await self.run(script)
@@ -131,7 +133,7 @@ class Tab:
         notes = await self.run("document.querySelector('.q-notifications')?.innerText")
         raise AssertionError(f"{script} is still {value!r}; {notes=}; errors: {self.errors}")
 
-    async def named(self, role, name, seconds=30.0):
+    async def named(self, role, name, seconds=PATIENCE):
         """The one element with a role and a name in the accessibility tree: its DOM node."""
         for _ in range(int(seconds / 0.05)):
             root = (await self.send("DOM.getDocument", depth=0))["root"]["nodeId"]

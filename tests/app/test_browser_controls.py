@@ -35,7 +35,7 @@ async def phone(tab):
     await tab.resize(390, 844)
     await tab.send("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
     await tab.send("Page.reload")  # pages look for touch screens when they are loaded
-    for _ in range(600):
+    for _ in range(int(chromium.PATIENCE / 0.05)):
         await asyncio.sleep(0.05)
         answer = await tab.send(
             "Runtime.evaluate", expression=f"'ontouchstart' in window && {FACTS}"
@@ -46,11 +46,16 @@ async def phone(tab):
 
 
 async def swipe(tab, places):
-    """Put a finger on the first place, draw it to the others, and lift it."""
+    """Put a finger on the first place, draw it to the others, and lift it once it rests there.
+
+    A finger lifted in motion has the page scroll on: a tap then ends that, and clicks nothing.
+    """
     for number, (x, y) in enumerate(places):
         kind = "touchMove" if number else "touchStart"
         await tab.send("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y}])
         await asyncio.sleep(0.02)
+    if len(places) > 1:
+        await asyncio.sleep(0.2)
     await tab.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
 

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(
 
 async def downloaded(tmp_path, name):
     """The bytes of a file that the page saves."""
-    for _ in range(600):
+    for _ in range(int(chromium.PATIENCE / 0.05)):
         if (tmp_path / name).exists():
             return (tmp_path / name).read_bytes()
         await asyncio.sleep(0.05)
@@ -147,9 +147,10 @@ def test_modes_workspace_and_motion(visit, tmp_path):
             await tab.until(f"{TEXT}.includes('the page was not in view')")
         await tab.run(hidden % "false" + ".hidden")
         await tab.click("button", "Save the motion as video")
+        await tab.until(f"!{NOTE}.includes('not in view')")
+        await tab.until(f"!{NOTE}.startsWith('processing')", seconds=300.0)
         film = await downloaded(tmp_path, f"{SIX_THREE}.webm")
         assert film[:4] == bytes([0x1A, 0x45, 0xDF, 0xA3])  # EBML
-        await tab.until(f"!{NOTE}.startsWith('processing')", seconds=60.0)
         note = await tab.run(NOTE)
         # As large as the pictures of the GIF.
         width, height, times = pictures(film)

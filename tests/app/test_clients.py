@@ -87,7 +87,7 @@ def asked(address, path, body):
 def until_known(address, body):
     """Ask for a maximum until it is known; the status of the first answer, and the last answer."""
     first = found = asked(address, "maximum", body)
-    for _ in range(600):
+    for _ in range(int(chromium.PATIENCE / 0.05)):
         if found["status"] == "known":
             break
         assert found["status"] in ("waiting", "processing"), found

@@ -120,7 +120,7 @@ def test_a_page_that_cannot_connect_states_it(visit):
         assert await tab.run("Boolean(document.querySelector('#app').inert)")
         await tab.send("Network.setBlockedURLs", urls=[])
         await tab.run("window.open_to_sockets = true")
-        await tab.until("!document.querySelector('#app').inert", seconds=60.0)
+        await tab.until("!document.querySelector('#app').inert")
         assert not await tab.run(f"{TEXT}.includes('Not connected')")
         tab.errors.clear()  # of requests that were blocked
 
@@ -136,9 +136,9 @@ def test_a_slow_network(visit):
         address = await tab.run("location.origin")
         await tab.send("Page.navigate", url=f"{address}/?design={OTHER}")
         state = started(gsp.catalogue.design(OTHER))
-        await tab.until(f"{FACTS}?.includes({determinant(state)})", seconds=90.0)
+        await tab.until(f"{FACTS}?.includes({determinant(state)})")
         slider = 'document.querySelector(\'[aria-label="yaw"][tabindex="0"]\')'
-        await tab.until(f"{slider} !== null", seconds=60.0)
+        await tab.until(f"{slider} !== null")
         await tab.run(f"{slider}.focus()")
         for _ in range(30):
             await tab.key("ArrowRight", 39)
@@ -146,15 +146,15 @@ def test_a_slow_network(visit):
             f"{slider}.closest('[aria-valuenow]')?.ariaValueNow || {slider}.ariaValueNow"
         )
         turned = motion.with_coordinate(state, "yaw", float(value))
-        await tab.until(f"{FACTS}.includes({determinant(turned)})", seconds=60.0)
+        await tab.until(f"{FACTS}.includes({determinant(turned)})")
         await tab.send("Network.emulateNetworkConditions", **{**SLOW, "offline": True})
         # The page states that it has no connection, and nothing can be changed meanwhile.
-        await tab.until(NOT_CONNECTED, seconds=60.0)
+        await tab.until(NOT_CONNECTED)
         await tab.named("alert", "")
         assert await tab.run("Boolean(document.querySelector('#app').inert)")
         assert await tab.run(f"{slider}.focus(), document.activeElement === document.body")
         await tab.send("Network.emulateNetworkConditions", **SLOW)
-        await tab.until("!document.querySelector('#app').inert", seconds=90.0)
+        await tab.until("!document.querySelector('#app').inert")
         assert not await tab.run(f"{TEXT}.includes('Not connected')")
         # Afterwards it works again, also where it had to be loaded again meanwhile.
         turned = motion.with_coordinate(turned, "yaw", 12.5)
