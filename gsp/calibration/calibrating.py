@@ -98,7 +98,8 @@ def calibrate(
     ------
     InvalidInput
         On wrong types or shapes, errors that are missing or not positive, a posture that is
-        undefined at a given or guessed pose, or no guess where one is needed.
+        undefined at a given or guessed pose, no guess where one is needed, or arguments without
+        an effect on such measurements.
 
     *Source: ours; least squares with latent poses, the rows from `TozKucuk2016`, eqs. (2)–(6)*
 
@@ -122,6 +123,8 @@ def calibrate(
     if guess is not None and guess.shape not in ((), (len(readings),)):
         wanted = f"batch shape () or ({len(readings)},)"
         raise InvalidInput(expected("guess", wanted, f"{guess.shape}"))
+    if guess is not None and isinstance(poses, Pose):
+        raise InvalidInput(expected("guess", "None beside measured poses", "poses"))
     measured, start = _measured(design, readings, poses, point, guess, joint_errors, pose_errors)
     dimensions = Dimensions.of(design, tuple(free))
     problem = Problem(
@@ -160,6 +163,10 @@ def _measured(
         pair = _pose_errors(pose_errors, 2, known)
     else:
         pair = _pose_errors(pose_errors, 1, known) if place is not None else None
+        if place is None and pose_errors is not None:
+            raise InvalidInput(expected("pose_errors", "None without poses", brief(pose_errors)))
+        if place is None and arm.any():
+            raise InvalidInput(expected("point", "the origin without poses", brief(arm)))
         if place is not None and pair is None:
             if known:
                 wanted = "the standard error of the places, as joint_errors is given"

@@ -107,12 +107,12 @@ def front_rows(table: pd.DataFrame, objectives: Objectives) -> tuple[Places, int
     Raises
     ------
     InvalidInput
-        As `gsp.exploration.pareto`, or if no row has all objectives.
+        As `gsp.exploration.pareto`, or if no row has finite objectives.
     """
     merits = merits_of(table, objectives)
     there = np.flatnonzero(np.isfinite(merits).all(axis=1))
     if not there.size:
-        raise InvalidInput(expected("table", "a row with both objectives", "none"))
+        raise InvalidInput(expected("table", "a row with finite objectives", "none"))
     kept = there[nondominated(merits[there])]
     place = knee(table.iloc[kept].reset_index(drop=True), objectives)
     return kept[np.argsort(merits[kept, 0], kind="stable")], int(kept[place])

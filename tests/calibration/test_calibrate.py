@@ -187,7 +187,9 @@ def test_deviations_have_the_stated_covariance(kind):
     exact = readings(nominal, 1, poses)
     target = None if kind == "sensors" else poses.position if kind == "places" else poses
     pose_errors = {"noisy poses": [2e-5, 1e-5], "places": 2e-5}.get(kind)
-    options = {"joint_errors": error, "pose_errors": pose_errors, "guess": poses}
+    options = {"joint_errors": error, "pose_errors": pose_errors}
+    if target is not poses:
+        options["guess"] = poses
     truth = gsp.calibrate(nominal, exact, target, **options)
     sizes = Dimensions.of(nominal).sizes
     squares, rank, residual, freedoms = 0.0, 0, 0.0, 0
@@ -397,6 +399,9 @@ def test_the_table_has_a_row_per_coordinate():
         ({"loss": "square"}, "loss: expected linear or soft_l1"),
         ({"poses": None, "design": NOMINAL.replace(home=None)}, "guess: expected a pose near"),
         ({"poses": None, "guess": POSES[:2]}, r"guess: expected batch shape \(\) or \(40,\)"),
+        ({"guess": POSES}, "guess: expected None beside measured poses"),
+        ({"poses": None, "pose_errors": 1.0, "joint_errors": 1.0}, "pose_errors: expected None"),
+        ({"poses": None, "point": [0.0, 0.0, 1.0]}, "point: expected the origin without poses"),
     ],
 )  # fmt: skip
 def test_wrong_arguments(changes, message):

@@ -66,6 +66,26 @@ def test_places_alone_leave_the_platform_frame_open(gsp, machine):
     assert "Not known  3 motions of the platform frame" in result.out
 
 
+def test_guessed_poses_are_those_of_the_library(gsp, machine):
+    _, poses, _, table = machine
+    table.iloc[:, :6].to_csv("readings.csv", index=False)
+    near = library.Pose.from_angles(poses.position + 0.01, poses.angles("zyx"), "zyx")
+    guess = pd.DataFrame(near.position, columns=["x", "y", "z"])
+    guess[["angle_1", "angle_2", "angle_3"]] = near.angles("zyx", degrees=True)
+    guess.to_csv("near.csv", index=False)
+    call = ("calibrate", "nominal.toml", "readings.csv", "--order", "zyx", "--out", "r.csv")
+    for rows, given in ((30, near), (1, near[0])):
+        guess.iloc[:rows].to_csv("near.csv", index=False)
+        assert gsp(*call, "--guess", "near.csv", "--force").status == 0
+        found = library.calibrate(NOMINAL, table.iloc[:, :6], guess=given)
+        np.testing.assert_allclose(pd.read_csv("r.csv")["value"], found.table()["value"], atol=1e-9)
+    guess.iloc[:2].to_csv("near.csv", index=False)
+    error = gsp(*call, "--guess", "near.csv", "--force").error
+    assert "guess: expected batch shape () or (30,)" in error
+    error = gsp("calibrate", "nominal.toml", "log.csv", "--guess", "near.csv").error
+    assert "--guess: not used beside measured angles" in error
+
+
 def test_tables_that_cannot_be_used(gsp, machine):
     table = machine[3]
     table.drop(columns="d3").to_csv("a.csv", index=False)

@@ -44,6 +44,16 @@ def calibrate_command(
             metavar="X Y Z",
         ),
     ] = (0.0, 0.0, 0.0),
+    guess: Annotated[
+        Path | None,
+        typer.Option(
+            help="A table of poses (x, y, z, angle_1, angle_2, angle_3 [degrees]) near those of "
+            "the measurements, where their angles are not known: one row, or one per measurement. "
+            "Default: the home pose.",
+            metavar="POSES",
+            show_default=False,
+        ),
+    ] = None,
     joint_errors: Annotated[
         float | None,
         typer.Option(
@@ -87,6 +97,8 @@ def calibrate_command(
     - `gsp calibrate mine.toml log.csv --write calibrated.toml --out report.csv`
 
     - `gsp calibrate mine.toml log.csv --joint-errors 0.01 --pose-errors 0.02 1e-4`
+
+    - `gsp calibrate mine.toml readings.csv --guess commanded.csv`
     """
     if write is not None:
         check_writable(write, overwrite=force, suffixes=(".toml",))
@@ -94,7 +106,7 @@ def calibrate_command(
         check_table(out, overwrite=force)
     nominal = find_design(design)
     readings, poses = measured(nominal, measurements, order)
-    _refuse_unused(context, poses)
+    _refuse_unused(context, poses, guess)
     errors: Any = pose_errors
     if pose_errors is not None and not isinstance(poses, Pose):
         errors = pose_errors[0]
@@ -103,6 +115,7 @@ def calibrate_command(
         readings,
         poses,
         point=point,
+        guess=guessed(guess, order),
         joint_errors=joint_errors,
         pose_errors=errors,
         loss=loss,
@@ -134,17 +147,34 @@ def measured(design: Design, path: Path, order: str) -> tuple[Any, Any]:
     if there != list(POSE_COLUMNS):
         wanted = f"{', '.join(POSE_COLUMNS)}, or x, y, z alone"
         raise InvalidInput(expected(str(path), wanted, ", ".join(there)))
-    numbers = read_table("MEASUREMENTS", path, POSE_COLUMNS)
-    return readings, Pose.from_angles(numbers[:, :3], numbers[:, 3:], order, degrees=True)
+    return readings, _poses("MEASUREMENTS", path, order)
 
 
-def _refuse_unused(context: typer.Context, poses: Any) -> None:
+def guessed(path: Path | None, order: str) -> Pose | None:
+    """Return the poses of a table, a single one for one row; None for no table.
+
+    Raises
+    ------
+    InvalidInput, MalformedFile
+    """
+    if path is None:
+        return None
+    poses = _poses("--guess", path, order)
+    return poses[0] if len(poses) == 1 else poses
+
+
+def _poses(option: str, path: Path, order: str) -> Pose:
+    numbers = read_table(option, path, POSE_COLUMNS)
+    return Pose.from_angles(numbers[:, :3], numbers[:, 3:], order, degrees=True)
+
+
+def _refuse_unused(context: typer.Context, poses: Any, guess: Path | None) -> None:
     """Raise InvalidInput on options that have no effect beside what was measured of the poses."""
-    if poses is None:
-        refuse_unused(context, ["point", "pose_errors", "order"], "a table without places")
-    elif isinstance(poses, Pose):
-        refuse_unused(context, ["point"], "measured angles: expected x, y, z alone")
-    else:
+    if isinstance(poses, Pose):
+        refuse_unused(context, ["point", "guess"], "measured angles: expected x, y, z alone")
+    elif poses is None:
+        refuse_unused(context, ["point", "pose_errors"], "a table without places")
+    if guess is None and not isinstance(poses, Pose):
         refuse_unused(context, ["order"], "a table without angles")
 
 
