@@ -6,7 +6,7 @@ import importlib
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FunctionType, ModuleType
@@ -155,43 +155,71 @@ def flat_region() -> Any:
     return workspace.fixed_orientation(HEXAPOD, plane=plane, resolution=2.5)
 
 
+class Made(Mapping[str, Any]):
+    """A mapping whose values are made when they are first read, each once."""
+
+    def __init__(self, makers: Mapping[str, Callable[[], Any]]) -> None:
+        self._makers = makers
+        self._made: dict[str, Any] = {}
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in self._made:
+            self._made[key] = self._makers[key]()
+        return self._made[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
+
+
 @cache
-def instances() -> dict[str, Any]:
+def instances() -> Mapping[str, Any]:
     """An instance of each class whose methods are public."""
-    shells = workspace.exact_shells(HEXAPOD)
-    section = workspace.section(HEXAPOD, rotation=np.eye(3), rays=4, connecting=False)
-    near = gsp.determinant.Neighbourhood(
-        home=POSE, centre=[0.0, 0.0, 1.0], displacement=1.0, angle=0.5
-    )
-    return {
-        "Design": DESIGN, "Pose": POSE, "PosePath": gsp.PosePath.through(NODES["poses"]),
-        "PoseBox": BOX, "Ellipsoid": SPHERE,
-        "Posture": DESIGN.at(POSE), "Mechanism": DESIGN.mechanism, "Limits": Limits(),
-        "Feasibility": gsp.feasible(HEXAPOD, gsp.Pose([0, 0, 10])),
-        "ForwardSolution": gsp.forward(DESIGN, DESIGN.at(POSE).joints, POSE),
-        "Index": gsp.indices.INDICES["control_number"],
-        "Maximum": gsp.determinant.maximum(OCTAHEDRON),
-        "PlanarDesign": PLANAR, "PlanarPose": PLANAR_POSE, "PlanarPosture": PLANAR.at(PLANAR_POSE),
-        "PlanarMechanism": planar.mechanisms()[0],
-        "PlanarComponent": planar.planar_components(PLANAR)[0],
-        "Shells": shells, "Section": section, "Volume": shells.volume(),
-        "Region": (region := workspace.fixed_orientation(HEXAPOD, resolution=2.5)),
-        "RegularPart": region.regular_parts()[0],
-        "IndexSample": region.index_sample("σ_min", 2, length=1.0),
-        "LabelledBoundary": workspace.boundary_curves(flat_region(), most=2),
-        "Film": gsp.plots.animate(MIXED, PATH, frames=2),
-        "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
-        "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
-        "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
-        "Sdf": gsp.bridges.to_sdf(DESIGN, POSE), "Masses": MASSES,
-        "Record": gsp.published.select("TozKucuk2016")[0],
-        "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
-        "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near, "Task": TASK,
-        "Space": HEXAPODS, "Deviations": DEVIATIONS,
-        "PoseTolerance": gsp.exploration.pose_tolerance(DESIGN, POSE, DEVIATIONS, samples=4),
-        "PathCertificate": gsp.certify_path(DESIGN, NODES["poses"]),
-        "Calibration": gsp.calibrate(DESIGN, [JOINTS], POSE.reshape(1)),
-    }  # fmt: skip
+    found = Made({
+        "Design": lambda: DESIGN, "Pose": lambda: POSE,
+        "PosePath": lambda: gsp.PosePath.through(NODES["poses"]),
+        "PoseBox": lambda: BOX, "Ellipsoid": lambda: SPHERE,
+        "Posture": lambda: DESIGN.at(POSE), "Mechanism": lambda: DESIGN.mechanism,
+        "Limits": Limits,
+        "Feasibility": lambda: gsp.feasible(HEXAPOD, gsp.Pose([0, 0, 10])),
+        "ForwardSolution": lambda: gsp.forward(DESIGN, DESIGN.at(POSE).joints, POSE),
+        "Index": lambda: gsp.indices.INDICES["control_number"],
+        "Maximum": lambda: gsp.determinant.maximum(OCTAHEDRON),
+        "PlanarDesign": lambda: PLANAR, "PlanarPose": lambda: PLANAR_POSE,
+        "PlanarPosture": lambda: PLANAR.at(PLANAR_POSE),
+        "PlanarMechanism": lambda: planar.mechanisms()[0],
+        "PlanarComponent": lambda: planar.planar_components(PLANAR)[0],
+        "Shells": lambda: workspace.exact_shells(HEXAPOD),
+        "Section": lambda: workspace.section(
+            HEXAPOD, rotation=np.eye(3), rays=4, connecting=False
+        ),
+        "Volume": lambda: found["Shells"].volume(),
+        "Region": lambda: workspace.fixed_orientation(HEXAPOD, resolution=2.5),
+        "RegularPart": lambda: found["Region"].regular_parts()[0],
+        "IndexSample": lambda: found["Region"].index_sample("σ_min", 2, length=1.0),
+        "LabelledBoundary": lambda: workspace.boundary_curves(flat_region(), most=2),
+        "Film": lambda: gsp.plots.animate(MIXED, PATH, frames=2),
+        "IndexMap": lambda: workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
+        "Surface": lambda: workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
+        "Solids": gsp.bridges.Solids, "Urdf": lambda: gsp.bridges.to_urdf(DESIGN, POSE),
+        "Sdf": lambda: gsp.bridges.to_sdf(DESIGN, POSE), "Masses": lambda: MASSES,
+        "Record": lambda: gsp.published.select("TozKucuk2016")[0],
+        "Store": lambda: gsp.determinant.Store("sqlite://"),
+        "Tolerances": gsp.proof.Tolerances,
+        "Certificate": lambda: gsp.certify(HEXAPOD, TINY),
+        "Neighbourhood": lambda: gsp.determinant.Neighbourhood(
+            home=POSE, centre=[0.0, 0.0, 1.0], displacement=1.0, angle=0.5
+        ),
+        "Task": lambda: TASK, "Space": lambda: HEXAPODS, "Deviations": lambda: DEVIATIONS,
+        "PoseTolerance": lambda: gsp.exploration.pose_tolerance(
+            DESIGN, POSE, DEVIATIONS, samples=4
+        ),
+        "PathCertificate": lambda: gsp.certify_path(DESIGN, NODES["poses"]),
+        "Calibration": lambda: gsp.calibrate(DESIGN, [JOINTS], POSE.reshape(1)),
+    })  # fmt: skip
+    return found
 
 
 # Arguments whose examples are instances, computed when they are needed.
@@ -309,7 +337,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "pose_tolerance": {"deviations": DEVIATIONS, "samples": 4},
     "calibrating.calibrate": {
         "joints": [JOINTS], "poses": POSE.reshape(1), "point": np.zeros(3), "joint_errors": None,
-        "pose_errors": None, "free": "joints", "loss": "linear", "loss_scale": 1.0,
+        "pose_errors": None, "free": "joints", "loss": "linear", "loss_scale": 1.0, "guess": None,
     },
     "tracks.track": {"joints": [JOINTS, JOINTS]},
     "Neighbourhood.pose": {"displacement": np.ones(3), "rotation_vector": np.ones(3)},
@@ -441,6 +469,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "plots.sweeps.sweep": {"table": Later("swept"), "indices": "control_number"},
     "checking.check": {"papers": "Workspace-A", "places": "figure", "files": SMALL},
     "checking.select": {"papers": "Workspace-A", "files": SMALL},
+    "checking.select_slips": {"papers": "Workspace-A", "files": SMALL},
     "checking.summary": {"checked": Later("checked")},
     "errata_page.errata": {"records": gsp.published.select("TozKucuk2016")[:2]},
     "quantities_of": {"paper": "Lee2000"},
@@ -495,6 +524,9 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "pose": gsp.Pose([0.0, 0.0, 1.0]),
     },
     "platforms.joint_names": {"family": "lee-3-3"},
+    "largest.largest_box": {"tolerance": 0.5, "budget": 5},
+    "proof.maximum.certify_maximum": {"budget": 5},
+    "Region.estimate": {"samples": 20},
     "around.largest_around": {"shape": "ball", "regular": True, "tolerances": None},
     "certify.certify_path": NODES,
     "PosePath.through": NODES,
@@ -602,15 +634,16 @@ def arguments(name: str) -> dict[str, Any]:
 
 
 @cache
-def public_callables() -> dict[str, Callable[..., Any]]:
+def public_callables() -> Mapping[str, Callable[..., Any]]:
     """Return the public callables; methods are those of example instances.
 
-    A class with methods and without an example instance is a KeyError.
+    Reading a method of a class without an example instance is a KeyError.
     """
-    return {
-        name: getattr(instances()[p.of], name.rpartition(".")[2]) if p.of else p.function
-        for name, p in public().items()
-    }
+    return Made({name: partial(_bound, name, one) for name, one in public().items()})
+
+
+def _bound(name: str, one: Public) -> Callable[..., Any]:
+    return getattr(instances()[one.of], name.rpartition(".")[2]) if one.of else one.function
 
 
 def names(*parameters: str) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import dataclasses
 import enum
 import importlib
@@ -61,6 +62,7 @@ NUMBERS = (
     "gsp.statics.",
     "gsp.workspace.",
 )
+BUILT_IN = {*dir(builtins), "Array", "Any"}  # words of annotations that name no record
 CHECKS = re.compile(r"\b(check|require)_\w+\(|^\s*@(arguments\.)?validated\(", re.MULTILINE)
 
 
@@ -144,7 +146,7 @@ def annotated(thing: object) -> Iterator[type]:
     held = [note for note in fields if "Callable" not in note]
     texts = held if isinstance(thing, type) else [notes.get("return", "")]
     module = importlib.import_module(thing.__module__)
-    for word in dict.fromkeys(re.findall(r"[A-Za-z]\w*", " ".join(map(str, texts)))):
+    for word in set(re.findall(r"[A-Za-z]\w*", " ".join(map(str, texts)))) - BUILT_IN:
         kind = vars(module).get(word) or imported(module).get(word)
         if isinstance(kind, type) and kind.__module__.startswith("gsp."):
             yield kind
@@ -153,7 +155,8 @@ def annotated(thing: object) -> Iterator[type]:
 @cache
 def imported(module: ModuleType) -> dict[str, object]:
     """What a module imports from the library for its annotations only."""
-    nodes = ast.walk(ast.parse(inspect.getsource(module)))
+    source = inspect.getsource(module)
+    nodes = ast.walk(ast.parse(source)) if "TYPE_CHECKING" in source else ()
     return {
         one.asname or one.name: getattr(importlib.import_module(node.module), one.name)
         for node in nodes

@@ -8,6 +8,7 @@ values agree to rounding for every design; where it states "changes", the values
 from __future__ import annotations
 
 from functools import cache
+from itertools import chain, islice
 from pathlib import Path
 
 import numpy as np
@@ -43,9 +44,10 @@ def designs():
     # The octahedron and the collinear base come early: many equal triangles, and a singular set.
     early = [special[i] for i in (3, 4, 9, 2)]
     late = [design for design in special if all(design is not other for other in early)]
-    others = [random_design(m.name, seed) for seed, m in enumerate(gsp.catalogue.mechanisms())]
-    mixed = [*general[:4], *early, *general[4:], *late, *others]
-    return mixed[: campaign.count(7, len(mixed))]
+    catalogue = gsp.catalogue.mechanisms()
+    mixed = [*general[:4], *early, *general[4:], *late]
+    others = (random_design(m.name, seed) for seed, m in enumerate(catalogue))
+    return list(islice(chain(mixed, others), campaign.count(7, len(mixed) + len(catalogue))))
 
 
 CASES = [case(design) for design in designs()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import runpy
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -13,14 +14,19 @@ from website import designs, gallery, indices, navigation, notebooks, reference
 from website.mathml import CODE
 
 ROOT = Path(__file__).parents[1]
-MADE = navigation.made()
+
+
+@cache
+def made():
+    """The pages that are made from records, made once."""
+    return navigation.made()
 
 
 def test_navigation_lists_every_page_once():
     """A page of docs/ that is in no list of website/navigation.py is at the end of the guide."""
     pages = {
         *navigation.written(),
-        *MADE,
+        *made(),
         *map(notebooks.page, notebooks.NOTEBOOKS),
         notebooks.OVERVIEW,
         gallery.PAGE,
@@ -39,14 +45,14 @@ def test_written_pages_are_those_of_the_repository():
 
 @pytest.mark.parametrize("index", gsp.indices.INDICES.values(), ids=lambda index: index.name)
 def test_page_of_an_index_has_its_record(index):
-    text = MADE[indices.page(index.name)]
+    text = made()[indices.page(index.name)]
     for fact in (index.symbol, index.source, index.better, *index.needs):
         assert fact.replace("|", "\\|") in text
     assert f"::: {index.function.__module__}.{index.function.__name__}" in text
     assert text.count("| yes |") >= sum(
         getattr(index.properties, flag) for flag in indices.PROPERTIES
     )
-    assert f"({index.name}.md)" in MADE[indices.OVERVIEW]
+    assert f"({index.name}.md)" in made()[indices.OVERVIEW]
 
 
 def test_every_property_of_the_record_is_shown():
@@ -56,7 +62,7 @@ def test_every_property_of_the_record_is_shown():
 
 @pytest.mark.parametrize("name", gsp.catalogue.design_names())
 def test_page_of_a_design_has_its_record(name):
-    design, text = gsp.catalogue.design(name), MADE[designs.page(name)]
+    design, text = gsp.catalogue.design(name), made()[designs.page(name)]
     assert design.source in text
     assert design.mechanism.name in text
     assert designs.numbers(design.base_points[-1]) in text
@@ -64,13 +70,13 @@ def test_page_of_a_design_has_its_record(name):
     if design.home is not None:
         for value in design.at(design.home).joints:
             assert f"{value:.7g}" in text
-    assert f"({name}.md)" in MADE[designs.OVERVIEW]
+    assert f"({name}.md)" in made()[designs.OVERVIEW]
 
 
 @pytest.mark.parametrize("name", reference.public_modules())
 def test_reference_has_every_public_name(name):
     module = reference.public_modules()[name]
-    text = MADE[reference.page(name)]
+    text = made()[reference.page(name)]
     for member in reference.names(module):
         value = getattr(module, member)
         if isinstance(value, type) or callable(value):

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import threading
+from functools import cache
 
 import pytest
 import rich.console
@@ -53,10 +54,14 @@ def test_help_has_examples(gsp, name):
     assert f"• gsp {name}" in gsp(name, "--help").out
 
 
+# As `load`, once for the tests of all commands.
+loaded = cache(load)
+
+
 def all_commands():
     """Yield the words of every command, also of commands of commands, and the command itself."""
     for name in COMMANDS:
-        command = load(name)
+        command = loaded(name)
         yield (name,), command
         yield from (
             ((name, part), found) for part, found in getattr(command, "commands", {}).items()

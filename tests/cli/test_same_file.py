@@ -7,13 +7,14 @@ from itertools import permutations
 
 import pytest
 
-from gsp.cli.app import COMMANDS, load
+from gsp.cli.app import COMMANDS
 from gsp.cli.inputs.files import FILE_METAVARS, is_path, shown_name
+from tests.cli.test_app import loaded
 
 
 def _commands():
     for name in COMMANDS:
-        command = load(name)
+        command = loaded(name)
         parts = getattr(command, "commands", {})
         yield from ([([name, key], part) for key, part in parts.items()] or [([name], command)])
 

@@ -7,6 +7,7 @@ Generated: designs, random ones of many mechanisms and symmetric or degenerate o
 from __future__ import annotations
 
 from collections import Counter
+from itertools import chain, islice
 from pathlib import Path
 
 import numpy as np
@@ -29,9 +30,11 @@ def designs():
     """Special designs, then random ones of mechanisms of every class."""
     names = ["D1^6", "D3^4 A1^2", "D2^6", "D4^6", "D1^3 D2^3", "D3^3 A1^3", "D2^3 D3^3", "D1^5 D4"]
     others = [m.name for m in gsp.catalogue.mechanisms()][5::7]
-    random = [random_design(name, i) for i, name in enumerate((*names, *others))]
-    mixed = [*special_designs()[:2], random[0], *special_designs()[2:], *random[1:]]
-    return mixed[: campaign.count(14, len(mixed))]
+    names += others
+    special = special_designs()
+    random = (random_design(name, i) for i, name in enumerate(names))
+    mixed = chain(special[:2], islice(random, 1), special[2:], random)
+    return list(islice(mixed, campaign.count(14, len(special) + len(names))))
 
 
 DESIGNS = designs()

@@ -21,7 +21,8 @@ from gsp.errors import FailedComputation, MalformedFile
 from gsp.model.posture import Posture
 from gsp.published.computing import compute
 from tests import campaign
-from tests.published.test_published_inputs import RECORDS, changes, falls, recomputed
+from tests.published.records import RECORDS
+from tests.published.test_published_inputs import changes, falls, recomputed
 
 # What reads and compares records, and checks arguments, is not part of a recomputation.
 NO_PART = ("gsp.published.checking", "gsp.published.computing", "gsp.published.record",

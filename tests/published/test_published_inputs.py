@@ -19,8 +19,8 @@ from gsp.indices import INDICES
 from gsp.published.checking import judge
 from gsp.published.computing import compute
 from tests import campaign
+from tests.published.records import RECORDS
 
-RECORDS = published.select()
 LETTERS = {
     "lee-3-3": {}, "lee-3-6": {"beta": 0.2}, "lee-6-6": {"alpha": 0.15, "beta": 0.2},
     "lee-centre": {"rho": 0.15}, "lee-side": {"rho": 0.15},

@@ -7,8 +7,8 @@ import pytest
 from gsp import published
 from gsp.errors import MalformedFile
 from gsp.published.ledger import items_of
+from tests.published.records import RECORDS
 
-RECORDS = published.select()
 LEDGERS = {ledger.paper: ledger for ledger in map(published.read_ledger, published.ledger_files())}
 
 # Counted in the papers: equations, figures (by their parts, where they have some), tables.
