@@ -223,7 +223,7 @@ def better_sides(table: Any, objectives: Any) -> dict[str, str]:
     """
     arguments.frame("table", table)
     if is_a(objectives, Mapping):
-        pairs = arguments.mapping("objectives", objectives)
+        pairs = objectives
     else:
         wanted = "names of columns"
         names = [
@@ -231,15 +231,28 @@ def better_sides(table: Any, objectives: Any) -> dict[str, str]:
             for name in check_items("objectives", objectives, wanted)
         ]
         pairs = {name: known_side(name) for name in names}
+    sides = stated_sides(table, pairs, "objectives")
+    if len(sides) < 2:
+        raise InvalidInput(expected("objectives", "at least two columns", len(sides)))
+    return sides
+
+
+def stated_sides(table: pd.DataFrame, pairs: Any, what: str = "better") -> dict[str, str]:
+    """Return which side of columns is better, as a mapping states it.
+
+    Raises
+    ------
+    InvalidInput
+        On what is no mapping, names that are no columns, and other sides than those of an index.
+    """
+    pairs = arguments.mapping(what, pairs)
     for name, side in pairs.items():
         if not isinstance(name, str) or name not in table.columns:
-            raise InvalidInput(expected("objectives", "columns of the table", brief(name)))
+            raise InvalidInput(expected(what, "columns of the table", brief(name)))
         if not isinstance(side, str) or side not in DIRECTIONS:
-            wanted = '"higher" or "lower" for each, as objectives={name: side}'
-            raise InvalidInput(expected(f"objectives, {name}", wanted, brief(side)))
-    if len(pairs) < 2:
-        raise InvalidInput(expected("objectives", "at least two columns", len(pairs)))
-    return pairs
+            wanted = f'"higher" or "lower" for each, as {what}={{name: side}}'
+            raise InvalidInput(expected(f"{what}, {name}", wanted, brief(side)))
+    return dict(pairs)
 
 
 def known_side(name: str) -> str | None:

@@ -14,8 +14,8 @@ from gsp.files.toml_lines import line_of, parse_toml
 from gsp.model.design import Design, read_design
 
 TABLES = ("ranges", "choices", "fixed")
-# Table, or table and key, with which messages on a space begin.
-_PLACE = re.compile(r"space(?:\.(\w+)(?:\['(.+?)'\])?)?: ")
+# Table, or table and key, with which messages on a space begin, and the place in a list.
+_PLACE = re.compile(r"space(?:\.(\w+)(?:\['(.+?)'\])?)?( \(at index .+?\))?: ")
 
 
 def find_design(text: str) -> Design:
@@ -68,9 +68,10 @@ def space_from_toml(text: str, origin: str, find: Find = find_design) -> Space:
 def _at_key(lines: Sequence[str], text: str) -> str:
     """Return a message on a space after the file: the line and the key, and what is wrong."""
     found = _PLACE.match(text)
-    table, key = ("make", None) if found is None else found.groups()
+    table, key, item = ("make", None, None) if found is None else found.groups()
     if table is None:
         return f": {text}"
     line = line_of(lines, table) if key is None else line_of(lines, key, table)
     path = table if key is None else f"{table}.{key}"
-    return f", line {line}, key {path!r}: {text if found is None else text[found.end() :]}"
+    rest = text if found is None else text[found.end() :]
+    return f", line {line}, key {path!r}{item or ''}: {rest}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from gsp.exploration.fronts import (
     known_side,
     merits_of,
     nondominated,
+    stated_sides,
 )
 from gsp.figures import style
 from gsp.geometry.vectors import Array
@@ -119,7 +120,12 @@ def front_rows(table: pd.DataFrame, objectives: Objectives) -> tuple[Places, int
 
 
 def parallel(
-    table: pd.DataFrame, columns: Sequence[str], by: str = "score", ax: Axes | None = None
+    table: pd.DataFrame,
+    columns: Sequence[str],
+    by: str = "score",
+    ax: Axes | None = None,
+    *,
+    better: Mapping[str, str] | None = None,
 ) -> Axes:
     """Return axes with parallel coordinates: one line per design, one vertical axis per column.
 
@@ -136,6 +142,8 @@ def parallel(
     by : str
         The column of numbers that colours the lines.
     ax : matplotlib Axes, optional
+    better : mapping of names to "lower" or "higher", optional
+        The better sides of columns of your own; those of indices are known, and can be turned.
 
     Returns
     -------
@@ -145,16 +153,16 @@ def parallel(
     ------
     InvalidInput
         On what is not a table, columns that it does not have, more than 12 different texts of a
-        column, or if no row has a number in all columns.
+        column, other sides, or if no row has a number in all columns.
     MissingSoftware
         Without matplotlib.
     """
     by = arguments.text("by", by)
-    lines = parallel_lines(table, columns, by)
+    lines = parallel_lines(table, columns, by, better or {})
     shades = column(table, by)[lines.rows]
     with style():
         ax = axes_or_new(ax, COLUMN_WIDTH * (len(lines.names) + 1), 4.0)
-        _draw(ax, lines.heights, shades, by, lines.names, lines.marks)
+        _draw(ax, lines, shades, by)
         return ax
 
 
@@ -166,6 +174,8 @@ class ParallelLines:
     ----------
     names : list of str
         Of the columns.
+    sides : list of "lower", "higher" or None
+        The better sides of the columns, None where they are not known.
     rows : (m,) array of int
         Places of the rows that have a line, the best last.
     heights : (m, number of columns) array
@@ -174,12 +184,15 @@ class ParallelLines:
     """
 
     names: list[str]
+    sides: list[str | None]
     rows: Places
     heights: Array
     marks: list[Marks]
 
 
-def parallel_lines(table: pd.DataFrame, columns: Sequence[str], by: str) -> ParallelLines:
+def parallel_lines(
+    table: pd.DataFrame, columns: Sequence[str], by: str, better: Mapping[str, str]
+) -> ParallelLines:
     """Return the lines of `parallel`.
 
     Raises
@@ -196,32 +209,27 @@ def parallel_lines(table: pd.DataFrame, columns: Sequence[str], by: str) -> Para
         raise InvalidInput(expected("columns", f"from 2 to {MOST_PARALLEL} columns", len(names)))
     by = arguments.text("by", by)
     shades = column(table, by)
-    axes = [_scaled(table, name) for name in names]
+    stated = stated_sides(table, better)
+    sides = [stated.get(name) or known_side(name) for name in names]
+    axes = [_scaled(table, name, side) for name, side in zip(names, sides, strict=True)]
     heights = np.stack([axis[0] for axis in axes], axis=1)
     there = np.flatnonzero(np.isfinite(heights).all(axis=1) & np.isfinite(shades))
     if not there.size:
         raise InvalidInput(expected("table", "a row with numbers in all columns", "none"))
-    better = -1.0 if known_side(by) == "lower" else 1.0
-    there = there[np.argsort(better * shades[there], kind="stable")]
+    sign = -1.0 if (stated.get(by) or known_side(by)) == "lower" else 1.0
+    there = there[np.argsort(sign * shades[there], kind="stable")]
     marks = [axis[1] for axis in axes]
-    return ParallelLines(names=names, rows=there, heights=heights[there], marks=marks)
+    return ParallelLines(names=names, sides=sides, rows=there, heights=heights[there], marks=marks)
 
 
-def _draw(
-    ax: Axes,
-    heights: Array,
-    shades: Array,
-    by: str,
-    names: Sequence[str],
-    ticks: Sequence[Marks],
-) -> None:
+def _draw(ax: Axes, lines: ParallelLines, shades: Array, by: str) -> None:
     from matplotlib.collections import LineCollection
 
-    places = list(range(heights.shape[1]))
-    lines = [np.column_stack((places, row)) for row in heights]
-    drawn = LineCollection(lines, array=shades, cmap="viridis", linewidths=0.9, alpha=0.8)
+    places = list(range(len(lines.names)))
+    ends = [np.column_stack((places, row)) for row in lines.heights]
+    drawn = LineCollection(ends, array=shades, cmap="viridis", linewidths=0.9, alpha=0.8)
     ax.add_collection(drawn)
-    for place, marks in zip(places, ticks, strict=True):
+    for place, marks in zip(places, lines.marks, strict=True):
         ax.axvline(place, color="black", linewidth=0.8, zorder=3)
         for height, text in marks:
             ax.annotate(
@@ -231,10 +239,9 @@ def _draw(
             )  # fmt: skip
     ax.set_xlim(-0.15, places[-1] + 0.45)
     ax.set_ylim(-0.06, 1.06)
-    sides = [known_side(name) for name in names]
     texts = [
         f"{label_of(name)} {ARROWS[side]}" if side else label_of(name)
-        for name, side in zip(names, sides, strict=True)
+        for name, side in zip(lines.names, lines.sides, strict=True)
     ]
     ax.set_xticks(places, [text.replace(", ", ",\n") for text in texts], fontsize=8)
     ax.set_yticks([])
@@ -244,15 +251,15 @@ def _draw(
     ax.figure.colorbar(drawn, ax=ax, label=label_of(by), pad=0.02)
 
 
-def _scaled(table: pd.DataFrame, name: str) -> tuple[Array, Marks]:
-    """Return the heights of a column in [0, 1], and its marks."""
+def _scaled(table: pd.DataFrame, name: str, side: str | None) -> tuple[Array, Marks]:
+    """Return the heights of a column in [0, 1], the better side above, and its marks."""
     if name not in table:
         raise InvalidInput(expected("columns", "columns of the table", brief(name)))
     values: Any = table[name]
     if values.dtype == bool or not pd.api.types.is_numeric_dtype(values):
         return _of_texts(name, [str(value) for value in values])
     heights, marks = _of_numbers(column(table, name))
-    if known_side(name) == "lower":
+    if side == "lower":
         return 1.0 - heights, [(1.0 - height, text) for height, text in marks]
     return heights, marks
 
@@ -274,7 +281,8 @@ def _of_numbers(numbers: Array) -> tuple[Array, Marks]:
     marks = [(0.0, f"{low:.4g}"), (1.0, f"{high:.4g}")]
     if is_log(finite):
         numbers, low, high = np.log(numbers), float(np.log(low)), float(np.log(high))
-    return np.asarray((numbers - low) / (high - low or 1.0)), marks
+    width = 0.5 * high - 0.5 * low or 1.0  # of halves, whose differences are numbers
+    return np.asarray((0.5 * numbers - 0.5 * low) / width), marks
 
 
 def is_log(values: Array) -> bool:

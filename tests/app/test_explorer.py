@@ -114,6 +114,16 @@ def test_parallel_lines_are_those_of_the_picture():
     assert shown["marks"][1] == [[0.0, "a"], [0.5, "b"], [1.0, "c"]]
 
 
+def test_heights_and_their_numbers_have_the_stated_side():
+    spec = spec_of(gsp.plots.explorer(TABLE, {"score": "higher", "cost": "lower"}))
+    lines, place = spec["parallel"], [one["name"] for one in spec["columns"]].index("cost")
+    axis = lines["columns"].index(place)
+    assert spec["columns"][place]["side"] == "lower"
+    assert lines["marks"][axis] == [[1.0, "10"], [0.0, "60"]]
+    costs = TABLE["cost"].to_numpy()[lines["rows"]]
+    np.testing.assert_allclose(lines["heights"][axis], (60 - costs) / 50, atol=1e-9)
+
+
 def test_columns_that_the_table_records_are_the_parameters():
     table = TABLE.copy()
     table.attrs["space"] = {"ranges": {"height": [1, 2]}, "choices": {"lost": ["a"], "maker": []}}

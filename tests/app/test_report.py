@@ -393,6 +393,53 @@ def test_a_report_ends_with_a_killed_server(tmp_path):
         assert parent.communicate(timeout=30.0)[0] == ""
 
 
+def test_strokes_of_the_task_are_those_of_all_sections():
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, strokes=(1.4, 2.4), unit="m")
+    box = gsp.PoseBox.around(design.home, [0.01] * 3 + [0.0] * 3)
+    value = float(np.linalg.norm(design.platform_points[0] + [0, 0, 1.5] - design.base_points[0]))
+    for ends, left in (((2.0, 2.1), value - 2.0), ((0.1, 0.2), 0.2 - value)):
+        limits = gsp.Limits(strokes=[ends] * 6)
+        found = study_of(
+            design, None, gsp.Task(poses=box, limits=limits, wanted=["mean CTN"], samples=4), None
+        )
+        shown = text_of(page.parts.joints(found)).replace("−", "-")
+        numbers = re.findall(r"d\d\s+([\d.]+) m\s+([\d.]+) … ([\d.]+)\s+(-?[\d.]+) m", shown)
+        expected = [value, *ends, left]
+        np.testing.assert_allclose(np.array(numbers, dtype=float), [expected] * 6, rtol=1e-3)
+        assert "The limits are the strokes of the task." in shown
+        assert ("would pass the stroke" in " ".join(summary(found))) == (left < 0)
+    assert "No position in this plane is within the limits." in page.proofs.workspace(found)
+
+
+def test_limits_that_bound_no_position_are_said():
+    design = gsp.catalogue.design(OCTAHEDRAL).replace(strokes=None)
+    task = gsp.Task(
+        poses=design.home[None], limits=gsp.Limits(leg_radius=1e-3), wanted=["mean CTN"]
+    )
+    assert "Nothing bounds the workspace" in page.proofs.workspace(
+        study_of(design, None, task, None)
+    )
+
+
+def test_the_distance_to_singular_poses_has_one_bound(study):
+    shown = text_of(page.parts.indices(study))
+    value = float(re.search(r"SD\s+singularity distance.*?\s([\d.]+)\s", shown)[1])
+    assert 0.0 <= study.distance.lower - value <= 1e-4 * value
+
+
+def test_an_undefined_design_is_not_compared():
+    design = gsp.catalogue.design(OCTAHEDRAL)
+    apart = design.base_points[0] - design.platform_points[0]
+    found = study_of(design, gsp.Pose(apart), None, None)
+    assert "as the design is undefined at this pose" in page.proofs.comparison(found)
+
+
+def test_a_length_of_a_task_that_does_not_fit_names_the_task():
+    task = gsp.Task(poses=gsp.Pose([[0.0, 0.0, 1.0]]), wanted=["mean CTN"], length=1e9)
+    with pytest.raises(gsp.GspError, match="task, length: characteristic length: expected"):
+        study_of(gsp.catalogue.design(OCTAHEDRAL), None, task, None)
+
+
 def test_designs_far_from_their_frame_keep_the_digits_of_their_size():
     away = np.array([1e6, -1e6, 5e5])
     plain = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, strokes=[1.2, 2.6])

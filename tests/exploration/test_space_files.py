@@ -93,6 +93,7 @@ def test_spaces_that_a_file_cannot_hold_are_refused(space, message, tmp_path):
         ('make = "hexapod"\nrange = 3', "line 2, key 'range': key: expected one of make, ranges"),
         ('make = "hexapod"\n[ranges]\nheight = [2, 1]', "line 3, key 'ranges.height': "),
         ('make = "hexapod"\n[ranges]\nheight = "x"', "line 3, key 'ranges.height': "),
+        ('make = "hexapod"\n[ranges]\nheight = [nan, 2]', "'ranges.height' (at index [0]): "),
         ('make = "hexapod"\n[ranges]\nheight = [1, nan]', "finite numbers"),
         ('make = "hexapod"\n[ranges]\n', "at least one range or choice, received none"),
         ('make = "hexapod"\n[choices]\nheight = []', "line 3, key 'choices.height': "),

@@ -56,6 +56,27 @@ def test_lines_of_parallel_coordinates_go_through_the_values():
     assert (texts[3, 0.0], texts[3, 1.0]) == ("8", "2")
 
 
+@pytest.mark.parametrize("name", ["radius", "control_number_mean"])
+def test_a_stated_side_turns_an_axis_its_numbers_and_its_order(name):
+    """Also where the usual side of an index is another one."""
+    ax = plots.parallel(TABLE, [name, "score"], by=name, better={name: "lower"})
+    values = TABLE[name].to_numpy()
+    heights = (values.max() - values) / np.ptp(values)
+    lines = ax.collections[0]
+    np.testing.assert_array_equal(lines.get_array(), sorted(values, reverse=True))
+    drawn = [line[0][1] for line in lines.get_segments()]
+    np.testing.assert_allclose(drawn, sorted(heights), atol=1e-15)
+    texts = {float(note.xy[1]): note.get_text() for note in ax.texts if note.xy[0] == 0}
+    assert texts == {0.0: f"{values.max():.4g}", 1.0: f"{values.min():.4g}"}
+    assert ax.get_xticklabels()[0].get_text().endswith("↓")
+
+
+def test_values_near_the_largest_number_have_heights():
+    table = TABLE.assign(radius=[-1e308, 1e308, 0.0, 5e307])
+    lines = plots.parallel(table, ["radius", "score"]).collections[0].get_segments()
+    np.testing.assert_allclose(sorted(line[0][1] for line in lines), [0.0, 0.5, 0.75, 1.0])
+
+
 def test_few_very_large_values_make_a_scale_logarithmic():
     table = TABLE.assign(condition_number_max=[1.0, 1.0, 10.0, 1e6])
     assert plots.front(table, COLUMNS).get_yscale() == "log"
@@ -73,6 +94,8 @@ def test_few_very_large_values_make_a_scale_logarithmic():
         (plots.parallel, {"columns": ["radius"]}, "from 2 to 12 columns"),
         (plots.parallel, {"columns": ["radius", "mass"]}, "columns of the table"),
         (plots.parallel, {"columns": COLUMNS, "by": "legs"}, "numbers"),
+        (plots.parallel, {"columns": COLUMNS, "better": {"mass": "lower"}}, "columns of the table"),
+        (plots.parallel, {"columns": COLUMNS, "better": {"radius": "up"}}, '"higher" or "lower"'),
     ],
 )
 def test_bad_calls(draw, given, message):

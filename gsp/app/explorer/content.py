@@ -38,7 +38,7 @@ def content(
     """
     sides = better_sides(table, objectives)
     front, knee = front_rows(table, objectives)
-    lines = parallel_lines(table, columns, by)
+    lines = parallel_lines(table, columns, by, sides)
     names, axes = list(table.columns), list(sides)
     order = _ordered(table, [*sides, by, *lines.names])
     return {

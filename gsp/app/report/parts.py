@@ -11,18 +11,21 @@ from gsp.app.page import tables
 from gsp.app.page.tables import number, table
 from gsp.app.report import pictures
 from gsp.app.report.meanings import MEANINGS
-from gsp.app.report.study import Place, Study
+from gsp.app.report.study import Place, Study, attempted
 from gsp.app.report.summary import measured
 from gsp.app.scene.figure import figure
 from gsp.app.state.matrices import HOMOGENEOUS, LINES, PLAIN, matrix
 from gsp.app.state.reading import IndexReading, powers
 from gsp.geometry.vectors import Array
-from gsp.rounding import digits_within
+from gsp.rounding import digits_within, rounded_down
+
+# The index that has a section of its own.
+DISTANCE = "singularity_distance"
 
 
 def geometry(study: Study) -> str:
     """Return the scene, which can be turned; a picture of it for paper; and the plan view."""
-    scene = figure(study.state.design, study.state.pose)
+    scene = figure(study.state.design.replace(strokes=study.strokes), study.state.pose)
     return (
         f'<div class="scene">{scene._repr_html_()}</div>'
         f'<div class="pair"><div class="paper">{pictures.in_space(study)}</div>'
@@ -74,7 +77,9 @@ def _facts(study: Study) -> list[tuple[str, str]]:
 def joints(study: Study) -> str:
     """Return the joint values, the strokes and what is left of them."""
     text = wide(tables.limits(study.reading.joints))
-    if study.state.design.strokes is None:
+    if study.limits is not None and study.limits.strokes is not None:
+        text += "<p class=note>The limits are the strokes of the task.</p>"
+    elif study.state.design.strokes is None:
         text += "<p class=note>The design states no strokes.</p>"
     return text
 
@@ -103,12 +108,13 @@ def indices(study: Study) -> str:
     """Return the indices: value, best value, what each measures, and whether it is good."""
     rows = [_index(study, one) for one in study.reading.indices]
     heads = ("index, and what it measures", "value", "better, best", "is it good?")
+    others = study.others - {study.state.design.mechanism.name}
     return (
         f'<div class="stack">{table(heads, rows, numbers=(1,))}</div>'
-        f"<p class=note>Good: a value in the first quarter of the {len(study.others)} mechanisms "
-        "of the catalogue that are not singular on the same anchor lines at this pose; poor: in "
-        "the last quarter. This compares mechanisms with these dimensions; other dimensions may "
-        "be better.</p>"
+        f"<p class=note>Good: a value in the first quarter of this design and the {len(others)} "
+        "other mechanisms of the catalogue that are not singular on the same anchor lines at this "
+        "pose; poor: in the last quarter. This compares mechanisms with these dimensions; other "
+        "dimensions may be better.</p>"
     )
 
 
@@ -116,12 +122,18 @@ def _index(study: Study, one: IndexReading) -> str:
     index, place = one.index, study.places[one.index.name]
     name, meaning = escape(index.name.replace("_", " ")), escape(MEANINGS[index.name])
     why = f'<br><span class="why">{escape(one.reason)}</span>' if one.reason else ""
-    value = escape(measured(one.value, powers(one.unit), 5))
+    value = escape(measured(_better_bound(study, one), powers(one.unit), 5))
     return (
         f'<tr><th scope="row">{escape(index.symbol)} <span class="why">{name}: {meaning}</span>'
         f'{why}</th><td class="n">{value}</td>'
         f"<td>{index.better}, {number(index.best, 4)}</td><td>{_verdict(place)}</td></tr>"
     )
+
+
+def _better_bound(study: Study, one: IndexReading) -> float:
+    """Return the value; of the distance to singular poses the better bound of its own section."""
+    near = attempted(lambda: study.distance)[0] if one.index.name == DISTANCE else None
+    return one.value if near is None else rounded_down(max(one.value, float(near.lower)), 5)
 
 
 def _verdict(place: Place | None) -> str:

@@ -21,10 +21,10 @@ from gsp.rounding import digits_within, rounded_down, rounded_up
 
 def workspace(study: Study) -> str:
     """Return sections and volume of the positions at which the rotation of the pose is feasible."""
-    if study.limits is None:
+    if study.limits is None or (study.strokes is None and study.limits.position is None):
         return (
             "<p class=note>Nothing bounds the workspace: the design has no strokes, and no task "
-            "with limits was given.</p>"
+            "with strokes or bounds of the position was given.</p>"
         )
     base, parts = power_base(study.state.design.unit), []
     squared, cubed = (base and f"{base}{power}" for power in "²³")
@@ -32,6 +32,8 @@ def workspace(study: Study) -> str:
         low, high = study.sections[name].area
         area = escape(f"area {bracket(low, high)} {squared}".rstrip())
         shown, why = attempted(lambda n=name: pictures.of_section(study, n))
+        if not high:
+            why = "No position in this plane is within the limits."
         parts.append(f"<figure>{shown or escape(why)}<figcaption>{area}</figcaption></figure>")
     low, high = study.space.volume
     facts = [("volume", f"{bracket(low, high)} {cubed}".rstrip())]
@@ -83,7 +85,9 @@ def _end(study: Study) -> str:
     if refuted is None:
         return ""
     share = rounded_up(study.around.above / (study.around.factor or study.around.above), 3)
-    if refuted.status == "refuted":
+    if refuted.status == "refuted" and study.around.box is None:
+        what = f"It is refuted at a pose in every box that was tried: {refuted.reason}."
+    elif refuted.status == "refuted":
         what = f"A box {number(share)} times as wide is refuted: {refuted.reason}."
     else:
         what = (
@@ -121,7 +125,7 @@ def _status(found: object) -> str:
     reason = getattr(found, "reason", "")
     if reason:
         text += f": {escape(reason)}"
-    if isinstance(found, Certificate):
+    if isinstance(found, Certificate) and found.n_boxes:
         text += f", {found.n_boxes} box{'' if found.n_boxes == 1 else 'es'}"
         if status == "undecided":
             text += f", {rounded_down(100.0 * found.proven_share, 3):.3g} % of the volume proven"
@@ -197,6 +201,9 @@ def statics(study: Study) -> str:
 def comparison(study: Study) -> str:
     """Return the place of the design among the mechanisms on its anchor lines, by each index."""
     found = {name: place for name, place in study.places.items() if place is not None}
+    if study.reading.undefined or study.reading.singular:
+        what = "undefined" if study.reading.undefined else "singular"
+        return f"<p>Nothing is compared, as the design is {what} at this pose.</p>"
     if not found:
         return "<p>No mechanism of the catalogue can be placed on these anchor lines.</p>"
     rows = [

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gsp.app.report.others import ranked
 from gsp.app.state import curves
@@ -93,8 +93,15 @@ class Study:
 
     @cached_property
     def reading(self) -> Reading:
-        """Joints, Jacobian and indices at the pose."""
-        return read(self.state, slow=True)
+        """Joints, Jacobian and indices at the pose, with the strokes of the task if it has some."""
+        design = self.state.design.replace(strokes=self.strokes)
+        return read(replace(self.state, design=design), slow=True)
+
+    @property
+    def strokes(self) -> ArrayLike | None:
+        """The strokes of the task, else those of the design."""
+        stated = self.limits.strokes if self.limits is not None else None
+        return self.state.design.strokes if stated is None else stated
 
     @cached_property
     def posture(self) -> Posture:
@@ -255,7 +262,12 @@ def study_of(design: Design, pose: Pose | None, task: Task | None, length: float
     """
     state = started(design, pose)
     given = length or (task.length if task is not None else None)
-    state = with_length(state, given or state.length or state.size)
+    try:
+        state = with_length(state, given or state.length or state.size)
+    except InvalidInput as error:
+        if length or given is None:
+            raise
+        raise InvalidInput(f"task, length: {error}") from error
     state = replace(state, maximum=attempted(lambda: known_maximum(design))[0])
     return Study(state, None if task is None else replace(task, length=state.length))
 
