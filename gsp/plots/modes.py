@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 MOST_COLUMNS, MODES_PANEL_SIDE = 8, 1.7
 # A scale for all panels may shrink the smallest mode by this factor.
 MOST_SHRUNK = 5.0
+# Differences of joint values between modes of a design at most, in its sizes and rad.
+SAME_JOINT = 1e-6
 # Colours of platforms by the sign of det J, -1, 0 and 1, and words for the signs.
 SIDES = {-1.0: (VERMILION, "det J < 0"), 0.0: (GREY, "singular"), 1.0: (BLUE, "det J > 0")}
 
@@ -40,7 +42,8 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
     The panels have one direction of view, and one scale unless the smallest mode would be shrunk
     to a fifth of its panel, as by a mode that is far away; the title states it. They are in the
     order of `modes.poses` and numbered from 1. The colour of the platform is the sign of det J.
-    Legs of D2, D3 and D4 are drawn between their feet on the lines.
+    Base and platform go through their anchor points. Legs of D2, D3 and D4 are drawn between their
+    feet on the lines, with the parts of the lines from the anchor points to the feet.
 
     Parameters
     ----------
@@ -56,7 +59,8 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
     Raises
     ------
     InvalidInput
-        On wrong types, or if there are no real modes.
+        On wrong types, a design that has other joint values at each of the modes, or if there are
+        no real modes.
     MissingSoftware
         Without matplotlib.
 
@@ -72,19 +76,36 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
     check_type("modes", modes, AssemblyModes)
     if len(modes.side) == 0:
         raise InvalidInput(expected("modes", "at least one real mode", f"none ({modes.status})"))
+    posture = design.at(modes.poses)
+    _check_joints(design, posture.joints)
     with style():
-        posture = design.at(modes.poses)
         anchors = modes.poses.position[:, None] + posture.lines.arm
         bottoms, tops = posture.segments.base_feet, posture.segments.platform_feet
         bottoms = np.where(np.isnan(bottoms), design.base_points, bottoms)
         tops = np.where(np.isnan(tops), anchors, tops)
+        base = np.broadcast_to(design.base_points, anchors.shape)
         figure, panels = space_panels(len(anchors), MODES_PANEL_SIDE, _columns(len(anchors)))
-        cubes, one_scale = _cubes(np.concatenate((bottoms, tops), axis=1))
+        cubes, one_scale = _cubes(np.concatenate((base, bottoms, tops, anchors), axis=1))
         for i, ax in enumerate(panels):
-            _draw(ax, bottoms[i], tops[i], cubes[i], _colour(modes.side[i]))
+            body(ax, base[i], GREY, _side(cubes[i]))
+            body(ax, anchors[i], _colour(modes.side[i]), _side(cubes[i]))
+            _draw_legs(ax, bottoms[i], tops[i])
+            for ends in ((base[i], bottoms[i]), (anchors[i], tops[i])):
+                _draw_lines(ax, *ends, SAME_JOINT * design.rms_radius)
+            _frame(ax, cubes[i])
             ax.set_title(f"{i + 1}", fontsize=8, y=0.97)
         _dress(figure, design, modes, one_scale)
         return figure
+
+
+def _check_joints(design: Design, joints: Array) -> None:
+    """Raise InvalidInput if joint values (n, m) differ between modes."""
+    sizes = np.where(design.angular, 1.0, design.rms_radius)
+    apart = np.abs(joints - joints[0]) / sizes
+    if (apart > SAME_JOINT).any():  # undefined ones are not compared
+        raise InvalidInput(
+            expected("design", "the one of the modes", "one with other joint values")
+        )
 
 
 def _columns(panels: int) -> int:
@@ -118,13 +139,26 @@ def _cube(points: Array) -> Array:
     return np.asarray((low + high) / 2.0 + half * np.array([[-1.0], [1.0]]))
 
 
-def _draw(ax: Axes3D, bottoms: Array, tops: Array, cube: Array, colour: str) -> None:
-    """Draw base, platform and legs, from their feet (n, 3) [length]."""
-    size = float(cube[1, 0] - cube[0, 0])
-    body(ax, bottoms, GREY, size)
-    body(ax, tops, colour, size)
+def _side(cube: Array) -> float:
+    """Return the side of a cube (2, 3) [length]."""
+    return float(cube[1, 0] - cube[0, 0])
+
+
+def _draw_legs(ax: Axes3D, bottoms: Array, tops: Array) -> None:
+    """Draw legs between their feet (n, 3) [length]."""
     for bottom, top in zip(bottoms, tops, strict=True):
         ax.plot(*np.stack((bottom, top)).T, color=INK, linewidth=0.6)
+
+
+def _draw_lines(ax: Axes3D, anchors: Array, feet: Array, least: float) -> None:
+    """Draw the lines from anchors to feet, (n, 3) [length], that are not as near as `least`."""
+    for ends in np.stack((anchors, feet), axis=1):
+        if np.abs(ends[1] - ends[0]).max() > least:
+            ax.plot(*ends.T, color=INK, linewidth=0.5, linestyle=":")
+
+
+def _frame(ax: Axes3D, cube: Array) -> None:
+    """Show a cube (2, 3) [length] without axes."""
     ax.set(xlim=cube[:, 0], ylim=cube[:, 1], zlim=cube[:, 2])
     ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.15)
     ax.view_init(elev=24, azim=-58)

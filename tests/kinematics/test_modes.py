@@ -6,6 +6,7 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 import gsp
@@ -562,6 +563,66 @@ def test_near_a_fold_two_real_modes_become_complex():
     exact = gsp.assembly_modes(design, fold.joints)
     assert exact.status in ("multiple", "found")
     assert apart(exact, at(low)).min() < 1e-5
+
+
+def _fold(seed):
+    """A random platform, joint values of a singular pose of it, and the direction of the fold."""
+    rng = np.random.default_rng(seed)
+    design = gsp.Design(SIX, *rng.normal(size=(2, 6, 3)))
+    pose, twist = gsp.Pose(rng.normal(size=3)), rng.normal(size=6)
+
+    def det(s):
+        return float(np.linalg.det(design.at(pose.moved(s * twist)).jacobian))
+
+    steps = np.linspace(0.0, 3.0, 400)
+    first = next(i for i in range(399) if det(steps[i]) * det(steps[i + 1]) < 0)
+    found = brentq(det, steps[first], steps[first + 1], xtol=1e-16)
+    posture = design.at(pose.moved(found * twist))
+    return design, posture.joints, np.linalg.svd(posture.jacobian)[0][:, -1]
+
+
+def _exact_step(design, joints, pose):
+    """A Newton step with residuals of 50 digits, 0 at an exact solution."""
+    posture = design.at(pose)
+    with mpmath.workdps(50):
+        turn = mpmath.matrix(pose.rotation.tolist())
+        rows = []
+        for a, b, d in zip(design.base_points, design.platform_points, joints, strict=True):
+            leg = mpmath.matrix(pose.position.tolist()) + turn * mpmath.matrix(b.tolist())
+            leg -= mpmath.matrix(a.tolist())
+            rows.append(float(mpmath.norm(leg) - mpmath.mpf(float(d))))
+    return np.linalg.solve(posture.jacobian, rows)
+
+
+@pytest.mark.parametrize("seed", range(count(3, 30)))
+def test_two_modes_beside_a_fold_are_told_apart(seed):
+    """Their distance is a root of that of the joint values; nearer ones are one double mode."""
+    design, joints, normal_to_fold = _fold(seed)
+    gaps = {}
+    for change in (-1e-11, 1e-11, -1e-13, 1e-13, 0.0):
+        target = joints + change * normal_to_fold
+        modes = gsp.assembly_modes(design, target, certify=True)
+        assert (modes.n_complex + modes.n_singular, modes.n_paths) == (40, 40)
+        assert modes.multiplicity.sum() == len(modes.side) + (modes.side == 0.0).sum()
+        assert not modes.certified[modes.multiplicity > 1].any()
+        if change == 0.0:
+            assert (modes.status, modes.n_singular) == ("multiple", 2)
+            continue
+        assert (modes.status, modes.n_complex) == ("found", 40)
+        points = np.hstack((modes.poses.position, modes.poses.rotation.reshape(-1, 9)))
+        distances = np.abs(points[:, None] - points).max(axis=2) + np.eye(len(points))
+        i, j = np.unravel_index(distances.argmin(), distances.shape) if len(points) else (0, 0)
+        if not len(points) or distances[i, j] > 1e-3:
+            continue
+        gaps[change] = distances[i, j]
+        assert modes.side[i] * modes.side[j] == -1.0
+        # Each is near an exact solution of its own.
+        for k in (i, j):
+            assert np.abs(_exact_step(design, target, modes.poses[k])).max() < 0.1 * gaps[change]
+    # On one side of the fold there are two, on the other none.
+    (one, two), ratio = sorted(gaps, key=abs), np.sqrt(100.0)
+    assert one * two > 0.0
+    assert gaps[two] / gaps[one] == pytest.approx(ratio, rel=0.05)
 
 
 # --- certificates ---

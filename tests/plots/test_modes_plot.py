@@ -29,7 +29,8 @@ def test_each_mode_has_a_panel_of_the_same_scale_with_its_platform():
     np.testing.assert_array_equal(blue, modes.side > 0)
 
 
-def test_a_mode_that_is_far_away_leaves_the_others_their_scale():
+def test_a_mode_that_is_far_away_leaves_the_others_their_scale(monkeypatch):
+    monkeypatch.setattr("gsp.plots.modes._check_joints", lambda *_: None)  # it is moved by hand
     modes = gsp.assembly_modes(LIFT, LIFT.at(LIFT.home).joints)
     near = gsp.plots.assembly_modes(LIFT, modes).axes[0]
     position = modes.poses.position + np.array([0.0, 0.0, 60.0]) * (np.arange(8) == 1)[:, None]
@@ -47,6 +48,31 @@ def test_what_is_not_modes_or_none_at_all_is_refused():
         gsp.plots.assembly_modes(LIFT, modes)
     with pytest.raises(InvalidInput, match="modes"):
         gsp.plots.assembly_modes(LIFT, "modes")
+    modes = gsp.assembly_modes(LIFT, LIFT.at(LIFT.home).joints)
+    eight = gsp.Design(["D1"] * 8, *np.random.default_rng(0).normal(size=(2, 8, 3)))
+    for other in (gsp.hexapod(2.0, 0.3, 1.0, 0.5, 1.5), eight):
+        with pytest.raises(InvalidInput, match="expected the one of the modes"):
+            gsp.plots.assembly_modes(other, modes)
+
+
+def test_base_and_platform_go_through_their_anchors_and_legs_end_at_their_feet():
+    up = np.array([[0.3, 0.1, 1.0]] * 6)
+    legs = ["D2", *["D1"] * 5]  # the line of the first one is that of the base
+    design = gsp.Design(legs, LIFT.base_points, LIFT.platform_points, up, up)
+    modes = gsp.assembly_modes(design, design.at(LIFT.home).joints)
+    figure = gsp.plots.assembly_modes(design, modes)
+    feet = design.at(modes.poses).segments
+    for i, ax in enumerate(figure.axes):
+        ends = np.array([np.transpose(line.get_data_3d()) for line in ax.lines])
+        legs = ends[:6]
+        np.testing.assert_allclose(legs[:, 0], feet.base_feet[i], atol=1e-9)
+        np.testing.assert_allclose(legs[:, 1], feet.platform_feet[i], atol=1e-9)
+        anchors = modes.poses[i].position + design.platform_points @ modes.poses[i].rotation.T
+        starts = np.vstack((design.base_points, anchors))
+        apart = np.abs(starts - np.vstack((feet.base_feet[i], feet.platform_feet[i])))
+        slides = np.flatnonzero(apart.max(axis=1) > 1e-3)
+        assert slides.size == 1
+        np.testing.assert_allclose(ends[6:, 0], starts[slides], atol=1e-9)
 
 
 def test_one_mode_and_a_singular_one_are_drawn():

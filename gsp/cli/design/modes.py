@@ -85,5 +85,7 @@ def modes_table(modes: AssemblyModes, order: str) -> pd.DataFrame:
 
 
 def _title(design: Design, modes: AssemblyModes) -> str:
+    if not modes.n_paths:
+        return f"{design.name}: no assembly mode was searched"
     total = modes.n_complex + modes.n_singular
     return f"{design.name}: {len(modes.side)} real of {total} complex assembly modes"

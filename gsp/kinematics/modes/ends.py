@@ -17,6 +17,7 @@ from gsp.kinematics.modes.equations import (
     linear,
     normal,
 )
+from gsp.kinematics.modes.pairs import told_apart
 from gsp.kinematics.modes.starts import (
     FIRST_CORRECTION,
     PATH_STEPS,
@@ -64,6 +65,8 @@ class Ends:
     ----------
     poses : (n, 7) complex array
         Each once.
+    paired : (n,) bool array
+        Which of them are one of two solutions beside each other; real ones have no imaginary part.
     singular : (n,) bool array
         Which of them are not regular: they are multiple, or lie on curves.
     multiplicity : (n,) int array
@@ -78,6 +81,7 @@ class Ends:
     """
 
     poses: Complex
+    paired: NDArray[np.bool_]
     singular: NDArray[np.bool_]
     multiplicity: NDArray[np.int64]
     at_infinity: int
@@ -155,11 +159,14 @@ def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: 
     """Return the solutions of routes: their regular ones, and the singular ones of the last."""
     regular = np.vstack([route.regular for route in routes])
     regular = regular[distinct(regular)]
-    clusters, numbers = _clusters(routes[-1].singular)
+    shares = regular_shares(layout, parameters, regular)
+    found = told_apart(layout, parameters, regular, shares, *_clusters(routes[-1].singular))
+    regular, clusters, numbers = found.regular, found.clusters, found.numbers
     known = len(regular) + int(numbers.sum())
     infinite = max(min(max(route.diverged for route in routes), total - known), 0)
     return Ends(
         poses=np.vstack((regular, clusters)),
+        paired=np.concatenate((found.paired, np.zeros(len(clusters), dtype=bool))),
         singular=np.repeat([False, True], [len(regular), len(clusters)]),
         multiplicity=np.concatenate((np.ones(len(regular), dtype=np.int64), numbers)),
         at_infinity=infinite,
@@ -199,14 +206,23 @@ def _grows(start: Start, parameters: Complex, pose: Complex, left: float) -> boo
 
 def is_regular(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
     """Whether the derivatives at poses (m, 7) have full rank, in the scales of rows and columns."""
+    return np.asarray(regular_shares(layout, parameters, poses) > REGULAR_SHARE)
+
+
+def regular_shares(layout: Layout, parameters: Complex, poses: Complex) -> Array:
+    """Return the smallest singular value at poses (m, 7) as a share of the largest one, (m,).
+
+    Of derivatives in the scales of rows and columns; 0 where these are not defined.
+    """
     slopes = linear(layout, parameters, poses)[1]
     with np.errstate(invalid="ignore", divide="ignore"):
         for axis in (2, 1, 2):
             slopes = slopes / np.linalg.norm(slopes, axis=axis, keepdims=True)
-    regular = np.asarray(np.isfinite(slopes).all(axis=(1, 2)))
-    values = np.linalg.svd(slopes[regular], compute_uv=False)
-    regular[regular] = values[:, -1] > REGULAR_SHARE * values[:, 0]
-    return regular
+    defined = np.asarray(np.isfinite(slopes).all(axis=(1, 2)))
+    values = np.linalg.svd(slopes[defined], compute_uv=False)
+    shares = np.zeros(len(poses))
+    shares[defined] = values[:, -1] / values[:, 0]
+    return shares
 
 
 def _singular_beside(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
@@ -314,18 +330,24 @@ def _along(kernel: Complex) -> Complex:
 
 
 def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, NDArray[np.int64]]:
-    """Return the real solutions, (m, 7), refined, and their places among the solutions."""
+    """Return the real solutions, (m, 7), refined, and their places among the solutions.
+
+    Newton's method in real numbers decides of regular solutions, and how two that are beside each
+    other were told apart of those.
+    """
     size = np.abs(ends.poses).max(axis=1, initial=1.0, keepdims=True)
     small = np.where(ends.singular, REAL_MOVE_TOLERANCE, IMAGINARY_TOLERANCE)
-    places = np.flatnonzero((np.abs(ends.poses.imag) / size).max(axis=1, initial=0.0) < small)
+    imaginary = (np.abs(ends.poses.imag) / size).max(axis=1, initial=0.0)
+    places = np.flatnonzero(np.where(ends.paired, imaginary == 0.0, imaginary < small))
     poses, singular = ends.poses[places].real.astype(np.complex128), ends.singular[places]
-    kept = np.zeros(len(poses), dtype=bool)
+    kept = ends.paired[places]
+    free = ~singular & ~kept
     refined = follow(
-        layout, parameters, parameters, poses[~singular], tight=FIRST_CORRECTION, most=PATH_STEPS
+        layout, parameters, parameters, poses[free], tight=FIRST_CORRECTION, most=PATH_STEPS
     )
-    moved = np.abs(refined.poses - poses[~singular]).max(axis=1, initial=0.0)
-    near = moved < REAL_MOVE_TOLERANCE * size[places][~singular, 0]
-    kept[~singular], poses[~singular] = near & refined.arrived, refined.poses
+    moved = np.abs(refined.poses - poses[free]).max(axis=1, initial=0.0)
+    near = moved < REAL_MOVE_TOLERANCE * size[places][free, 0]
+    kept[free], poses[free] = near & refined.arrived, refined.poses
     if singular.any():
         poses[singular], error, _ = returned(layout, parameters, poses[singular])
         flat = np.abs(poses[singular].imag).max(axis=1) < IMAGINARY_TOLERANCE
