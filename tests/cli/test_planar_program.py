@@ -18,6 +18,36 @@ def triangle(tmp_path):
     return "triangle.toml"
 
 
+def test_joint_values_have_all_their_poses(gsp, triangle):
+    """Each of them has the joint values, by own formulas; the one they are of is among them."""
+    pose = np.array([0.9, 0.7]), 0.2
+
+    def lengths(position, phi):
+        turn = np.array([[np.cos(phi), -np.sin(phi)], [np.sin(phi), np.cos(phi)]])
+        return np.linalg.norm(position + PLATFORM @ turn.T - BASE, axis=1)
+
+    joints = lengths(*pose)
+    words = " ".join(map(str, joints))
+    result = gsp("planar", triangle, "--joints", words, "--out", "modes.csv")
+    assert (result.status, result.err) == (0, "")
+    table = pd.read_csv("modes.csv")
+    assert f"triangle: {len(table)} assembly modes; position in m" in result.out
+    assert len(table) % 2 == 0
+    for row in table.itertuples():
+        found = lengths(np.array([row.x, row.y]), np.deg2rad(row.angle))
+        np.testing.assert_allclose(found, joints, atol=1e-9)
+    apart = np.abs(table[["x", "y", "angle"]] - [*pose[0], np.rad2deg(pose[1])]).max(axis=1)
+    assert apart.min() < 1e-7
+    assert (
+        "--rays: not used beside --joints"
+        in gsp("planar", triangle, "--joints", words, "--rays", 9).error
+    )
+    assert "expected" in gsp("planar", triangle, "--joints", "1 2").error
+    assert "--force" in gsp("planar", triangle, "--joints", words, "--out", "modes.csv").error
+    assert "0 assembly modes" in gsp("planar", triangle, "--joints", "1 1 9").out
+    assert "undefined: " in gsp("planar", triangle, "--joints", "1 1 -1").err
+
+
 def feasible(points):
     """Whether some of many angles is feasible at each point (n, 2); written afresh."""
     phi = np.linspace(-np.pi, np.pi, 7001)

@@ -1,4 +1,4 @@
-"""`gsp forward --all`: every assembly mode of joint values."""
+"""`gsp forward --all` and `gsp planar --joints`: every assembly mode of joint values."""
 
 from __future__ import annotations
 
@@ -7,19 +7,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.cli.outputs.console import number, say, warn
+from gsp.cli.inputs.numbers import read_rows
+from gsp.cli.outputs.console import counted, number, say, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.cli.outputs.poses import pose_columns, print_rows
 from gsp.errors import InvalidInput, expected
+from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes import AssemblyModes, assembly_modes
 from gsp.kinematics.modes.modes import STATUS_MEANINGS
+from gsp.kinematics.planar import planar_modes
 from gsp.model.design import Design
+from gsp.planar import PlanarDesign
 
 if TYPE_CHECKING:
     import pandas as pd
 
+# What is not found of planar platforms.
+PLANAR_STATUS = {
+    "moving": STATUS_MEANINGS["moving"],
+    "incomplete": "a joint value is more than 1e6 times the size of the design",
+    "undefined": STATUS_MEANINGS["undefined"],
+}
 # Words for the sign of det J.
 SIDES = {-1.0: "-", 0.0: "singular", 1.0: "+"}
 
@@ -56,6 +66,46 @@ def all_modes(
 
         save_picture(draw(design, modes), plot, overwrite=force)
     return table
+
+
+def all_planar_modes(design: PlanarDesign, joints: str, out: Path | None, *, force: bool) -> None:
+    """Print the modes of a planar platform, and write them to a table if that is required.
+
+    Parameters
+    ----------
+    joints : str
+        Three values, or the name of a table with one row.
+    """
+    import pandas as pd
+
+    if out is not None:
+        check_table(out, overwrite=force)
+    values = np.atleast_2d(read_rows("--joints", joints, design.joint_names, gaps=True))
+    if len(values) != 1:
+        raise InvalidInput(expected("--joints", "the values of one pose", f"{len(values)} rows"))
+    modes = planar_modes(design, values[0])
+    table = pd.DataFrame(
+        {
+            "mode": np.arange(1, len(modes.side) + 1),
+            "side": modes.side,
+            "x": modes.pose.position[:, 0],
+            "y": modes.pose.position[:, 1],
+            "angle": np.rad2deg(modes.pose.angle),
+            "residual": modes.residual,
+        }
+    )
+    unit = design.unit or "units"
+    found = counted(len(table), "assembly mode")
+    say(f"{design.name}: {found}; position in {unit}, angle in degrees", "bold")
+    if len(table):
+        shown = table.assign(det_j=[SIDES[float(side)] for side in table["side"]])
+        print_rows(shown, ("mode", "det_j", "x", "y", "angle"), text=("mode", "det_j"))
+    if modes.status in PLANAR_STATUS:
+        warn(f"{modes.status}: {PLANAR_STATUS[modes.status]}")
+    if out is not None:
+        facts = {"design": design.name, "unit_of_length": design.unit, "angle": "degrees"}
+        write_table(table, out, facts, overwrite=force)
+        say(f"Table      {out}")
 
 
 def _print(table: pd.DataFrame, *, certify: bool) -> None:

@@ -10,6 +10,7 @@ import typer
 
 from gsp import arguments
 from gsp.checks import check_memory
+from gsp.cli.design.modes import all_planar_modes
 from gsp.cli.inputs.designs import find_planar_design
 from gsp.cli.inputs.options import Connecting, Force, Rays, refuse_unused
 from gsp.cli.inputs.workspaces import check_stroke
@@ -20,12 +21,27 @@ from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.files.tables import check_table
 from gsp.planar import PlanarComponent, PlanarDesign
 
+# Options of the workspace.
+OF_WORKSPACE = (
+    "stroke", "guess", "position", "angle", "rays", "starts", "seed", "connecting", "boundary",
+    "plot",
+)  # fmt: skip
+
 
 def planar(
     context: typer.Context,
     design: Annotated[
         str, typer.Argument(help="A published planar design, or a planar design file (.toml).")
     ],
+    joints: Annotated[
+        str | None,
+        typer.Option(
+            help="Find all poses with these joint values instead of the workspace: three numbers, "
+            "distances in the unit of the design, angles in rad.",
+            metavar="VALUES",
+            show_default=False,
+        ),
+    ] = None,
     stroke: Annotated[
         tuple[float, float] | None,
         typer.Option(
@@ -74,7 +90,9 @@ def planar(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Write the points of all curves to this file.", metavar="FILE", show_default=False
+            help="Write the points of all curves, or the poses of --joints, to this file.",
+            metavar="FILE",
+            show_default=False,
         ),
     ] = None,
     plot: Annotated[
@@ -97,15 +115,23 @@ def planar(
     are the boundaries of all of them. Without it the curves are those that rays from the radiating
     point or poses with all legs at a limit lead to.
 
+    With --joints the poses with given joint values are listed: forward kinematics.
+
     **Examples**
 
     - `gsp planar lee-2000-planar --stroke 0.3 0.9 --plot planar.png`
 
     - `gsp planar lee-2000-planar --stroke 0.3 0.9 --angle 10 --boundary boundary.csv`
+
+    - `gsp planar lee-2000-planar --joints "0.6 0.6 0.5"`
     """
     from gsp.planar import planar_section
     from gsp.workspace.boundary.mapping import RAY_BYTES
 
+    if joints is not None:
+        refuse_unused(context, OF_WORKSPACE, "--joints, which lists poses")
+        all_planar_modes(find_planar_design(design), joints, out, force=force)
+        return
     if plot is not None:
         check_picture(plot, overwrite=force)
     for path in (boundary, out):
