@@ -12,7 +12,6 @@ import pytest
 
 import gsp
 from tests.app import chromium
-from tests.app.serving import server
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytestmark = pytest.mark.skipif(
@@ -27,12 +26,13 @@ def number(text, name):
     return float(re.search(rf"{re.escape(name)}[^\n]*\n(\S+)", text)[1].replace("−", "-"))
 
 
-def test_the_page_in_a_browser(tmp_path):
+def test_the_page_in_a_browser(served, browsed, tmp_path):
     design = gsp.catalogue.design(TOZ)
 
     async def work(address):
-        async with chromium.browser(tmp_path) as opened:
-            one, two = await asyncio.gather(opened(address), opened(address, 390, 800))
+        page = f"{address}/?design={TOZ}"
+        async with chromium.tabs(browsed, tmp_path) as opened:
+            one, two = await asyncio.gather(opened(page), opened(page, 390, 800))
             await asyncio.gather(*(tab.until(f"{FACT}.includes('−2674321')") for tab in (one, two)))
             # Buttons by their names; the numbers are those of the library.
             await one.run("document.querySelector('[aria-label=\"position x plus\"]').click()")
@@ -71,9 +71,8 @@ def test_the_page_in_a_browser(tmp_path):
                 ]
                 assert foreign == ["about:blank"] * len(foreign)
 
-    with server(tmp_path, TOZ) as address:
-        asyncio.run(work(address))
-        # A page of another origin gets no socket.
-        request = urllib.request.Request(address, headers={"Origin": "http://evil.example"})
-        with pytest.raises(urllib.error.HTTPError, match="403"):
-            urllib.request.urlopen(request)
+    asyncio.run(work(served))
+    # A page of another origin gets no socket.
+    request = urllib.request.Request(served, headers={"Origin": "http://evil.example"})
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        urllib.request.urlopen(request)

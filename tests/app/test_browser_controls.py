@@ -225,12 +225,12 @@ def test_the_ranking_is_sorted_by_keyboard(visit):
 @pytest.mark.parametrize("path", ["nonsense", "report/1", "index.html"])
 def test_an_unknown_address_is_no_page_of_the_tool(served, path):
     with pytest.raises(urllib.error.HTTPError) as found:
-        urllib.request.urlopen(f"{served[0]}/{path}")
+        urllib.request.urlopen(f"{served}/{path}")
     page = found.value.read().decode()
     assert found.value.code == 404
     assert "There is no page at this address." in page
     assert "href='/'" in page
-    with urllib.request.urlopen(f"{served[0]}/?design=lee-2000-3-3") as answer:
+    with urllib.request.urlopen(f"{served}/?design=lee-2000-3-3") as answer:
         assert answer.status == 200
 
 
@@ -290,7 +290,7 @@ def test_numbers_are_not_broken_and_notes_have_a_place_at_the_width_of_a_phone(v
 
 
 def test_a_body_of_megabytes_gets_an_answer(served):
-    request = urllib.request.Request(f"{served[0]}/api/evaluate", b"x" * 3_000_000, method="POST")
+    request = urllib.request.Request(f"{served}/api/evaluate", b"x" * 3_000_000, method="POST")
     with pytest.raises(urllib.error.HTTPError) as found:
         urllib.request.urlopen(request)
     assert found.value.code == 413

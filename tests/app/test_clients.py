@@ -16,6 +16,7 @@ from gsp.app.page.panels.controls import NAMES
 from gsp.app.page.tables import number as text_of
 from gsp.app.state import motion
 from gsp.app.state.session import started
+from tests import campaign
 from tests.app import chromium, sockets
 from tests.app.serving import server
 from tests.app.visiting import FACTS, SIX_THREE, TEXT
@@ -26,10 +27,10 @@ in_browser = pytest.mark.skipif(
     chromium.executable() is None, reason="no Chromium is installed: the page is not tested in it"
 )
 
-CLIENTS, STEPS = 20, 5
+CLIENTS, STEPS = campaign.count(8, 20), campaign.count(3, 5)
 
 
-def test_twenty_clients_move_sliders_at_once(tmp_path):
+def test_many_clients_move_sliders_at_once(served):
     """Each has a motion of its own, and sees the number of the library at each of its poses."""
     start = started(gsp.catalogue.design(SIX_THREE))
 
@@ -50,11 +51,10 @@ def test_twenty_clients_move_sliders_at_once(tmp_path):
             ]
             await asyncio.gather(*(one(page, i) for i, page in enumerate(pages)))
 
-    with server(tmp_path, SIX_THREE) as address:
-        asyncio.run(work(address))
+    asyncio.run(work(served))
 
 
-def test_sockets_of_other_origins_are_refused(tmp_path):
+def test_sockets_of_other_origins_are_refused(served):
     async def status(address, **headers):
         place = f"{address.replace('http', 'ws')}/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
         try:
@@ -70,8 +70,7 @@ def test_sockets_of_other_origins_are_refused(tmp_path):
         foreign = {"additional_headers": {"Host": "evil.example"}}
         assert await status(address, origin="http://evil.example", **foreign) == 403
 
-    with server(tmp_path, SIX_THREE) as address:
-        asyncio.run(work(address))
+    asyncio.run(work(served))
 
 
 def asked(address, path, body):

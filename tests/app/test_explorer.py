@@ -249,7 +249,7 @@ FRAME = "document.querySelector('iframe')?.contentWindow"
 
 
 @in_browser
-def test_a_click_shows_the_design_and_a_range_dims_the_others(tmp_path):
+def test_a_click_shows_the_design_and_a_range_dims_the_others(browsed, tmp_path):
     """In the output of a notebook, which is a frame in another page."""
     shown = gsp.plots.explorer(TABLE, COLUMNS, designs=SPACE)._repr_html_()
     page = f"<!doctype html><style>body {{ margin: 0 }}</style>{shown}"
@@ -276,7 +276,7 @@ def test_a_click_shows_the_design_and_a_range_dims_the_others(tmp_path):
             assert np.isclose(drawn, radius, rtol=1e-4)
 
     async def work():
-        async with chromium.browser(tmp_path) as opened:
+        async with chromium.tabs(browsed, tmp_path) as opened:
             tab = await opened((tmp_path / "notebook.html").as_uri(), 1000, 1000)
             await tab.send("Page.bringToFront")
 

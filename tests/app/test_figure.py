@@ -80,7 +80,7 @@ def test_what_cannot_be_shown(tmp_path):
 
 
 @in_browser
-def test_it_is_drawn_and_turned_without_a_network(tmp_path):
+def test_it_is_drawn_and_turned_without_a_network(browsed, tmp_path):
     """As a file, and in the output of a notebook, which is a frame in another page."""
     shown = gsp.catalogue.design(TOZ).show()
     shown.write(tmp_path / "scene.html")
@@ -110,7 +110,7 @@ def test_it_is_drawn_and_turned_without_a_network(tmp_path):
         assert {url.split(":")[0] for url in tab.requests} <= {"about", "file", "blob", "data"}
 
     async def work():
-        async with chromium.browser(tmp_path) as opened:
+        async with chromium.tabs(browsed, tmp_path) as opened:
             await one(opened, "scene.html", "document")
             await one(opened, "notebook.html", frame)
 

@@ -41,7 +41,7 @@ def determinant(state):
     return json.dumps(text_of(np.linalg.det(state.design.at(state.pose).jacobian), 7))
 
 
-def test_a_restarted_server_loses_no_state(tmp_path):
+def test_a_restarted_server_loses_no_state(browsed, tmp_path):
     """An open page loads itself again: with its own design and limits, pose and length."""
     port = free_port()
     state = started(gsp.catalogue.design(SIX_THREE))
@@ -51,7 +51,7 @@ def test_a_restarted_server_loses_no_state(tmp_path):
     loaded = "performance.timeOrigin"
 
     async def work():
-        async with chromium.browser(tmp_path) as opened:
+        async with chromium.tabs(browsed, tmp_path) as opened:
             with server(tmp_path, SIX_THREE, killed=True, port=port) as address:
                 tab = await opened(address, 1366, 768)
                 await tab.until(FACTS)

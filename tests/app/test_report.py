@@ -16,7 +16,6 @@ import pytest
 
 import gsp
 from tests.app import chromium
-from tests.app.serving import server
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytest.importorskip("matplotlib", reason="the extra `plots` is not installed")
@@ -257,13 +256,13 @@ def test_progress_counts_the_sections(monkeypatch):
 
 @pytest.mark.skipif(chromium.executable() is None, reason="no Chromium is installed")
 @pytest.mark.parametrize("width", [1366, 390])
-def test_the_page_in_a_browser(tmp_path, small, width):
+def test_the_page_in_a_browser(browsed, tmp_path, small, width):
     """It is drawn, no wider than the screen, loads nothing, and on paper has a picture."""
     path = tmp_path / "report.html"
     path.write_text(small, encoding="utf-8")
 
     async def work():
-        async with chromium.browser(tmp_path) as opened:
+        async with chromium.tabs(browsed, tmp_path) as opened:
             tab = await opened(path.as_uri(), width, 800)
             await tab.until("document.readyState === 'complete' && document.images.length > 1")
             scene = "document.querySelector('iframe').contentDocument"
@@ -308,7 +307,7 @@ async def until(address, wanted):
 
 
 @pytest.mark.skipif(chromium.executable() is None, reason="no Chromium is installed")
-def test_the_tool_opens_the_report_of_its_state(tmp_path):
+def test_the_tool_opens_the_report_of_its_state(served, browsed, tmp_path):
     """In another tab, at the pose that is shown; sliders go on, and a second report waits."""
 
     async def work(tab, address, opened):
@@ -348,22 +347,21 @@ def test_the_tool_opens_the_report_of_its_state(tmp_path):
             await asyncio.wait_for(until(address, False), 5.0)
 
     async def run(address):
-        async with chromium.browser(tmp_path) as opened:
+        async with chromium.tabs(browsed, tmp_path) as opened:
             # One step below a singular pose, whose report is short.
-            tab = await opened(f"{address}/?position=0,0,-0.05", 1366, 768)
+            tab = await opened(f"{address}/?design={OCTAHEDRAL}&position=0,0,-0.05", 1366, 768)
             await tab.until("document.querySelector('.gsp-facts')?.innerText")
             await closed(address, opened)
             await work(tab, address, opened)
 
-    with server(tmp_path, OCTAHEDRAL) as address:
-        asyncio.run(run(address))
-        for method in ("GET", "POST"):
-            status, page = asked(address, "design=no-such-design", method)
-            assert status == 422
-            assert "no-such-design" in page
-            status, page = asked(address, "length=3&length=4", method)
-            assert status == 422
-            assert "link: expected one length" in page
+    asyncio.run(run(served))
+    for method in ("GET", "POST"):
+        status, page = asked(served, "design=no-such-design", method)
+        assert status == 422
+        assert "no-such-design" in page
+        status, page = asked(served, "length=3&length=4", method)
+        assert status == 422
+        assert "link: expected one length" in page
 
 
 KILLED = """
