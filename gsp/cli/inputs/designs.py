@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms, place
@@ -13,7 +14,9 @@ from gsp.errors import GspError, MalformedFile, UnknownDesign, UnknownMechanism
 from gsp.families.texts import design_of_family, is_family
 from gsp.model.design import Design, read_design
 from gsp.model.mechanism import Mechanism
-from gsp.planar import PlanarDesign, planar_design, planar_design_names, read_planar_design
+
+if TYPE_CHECKING:
+    from gsp.planar import PlanarDesign
 
 _MECHANISM = re.compile(r"^[\s$\\]*[DA][\s_{]*[\d₀-₉]", re.IGNORECASE)
 # Legs one by one, such as D1-D2-0-D4A1-D1-D2, or a mechanism, and the template after an @.
@@ -42,10 +45,18 @@ def _is_file(text: str, *, planar: bool = False) -> bool:
     return found
 
 
+# The package of planar mechanisms takes half of the time of a short command to load: it is imported
+# where a design is planar, or may be.
+def _planar_names() -> tuple[str, ...]:
+    from gsp.planar import planar_design_names
+
+    return planar_design_names()
+
+
 def _is_known(text: str, *, planar: bool) -> bool:
     """Whether a text is the name of a design, a family with parameters, or of a mechanism."""
     if planar:
-        return text in planar_design_names()
+        return text in _planar_names()
     if text in design_names() or is_family(text):
         return True
     try:
@@ -74,7 +85,7 @@ def find_design(text: str) -> Design:
         return design_of_family(text)
     if text not in design_names():
         hint = DIMENSIONS if _MECHANISM.match(text) else HINT
-        hint = PLANAR if text in planar_design_names() else hint
+        hint = PLANAR if text in _planar_names() else hint
         raise UnknownDesign("design", text, design_names(), hint)
     return published_design(text)
 
@@ -84,6 +95,8 @@ def _read_spatial(text: str) -> Design:
     try:
         return read_design(text)
     except MalformedFile as error:
+        from gsp.planar import read_planar_design
+
         try:
             read_planar_design(text)
         except GspError:
@@ -93,6 +106,8 @@ def _read_spatial(text: str) -> Design:
 
 def find_planar_design(text: str) -> PlanarDesign:
     """Return the planar design in a file of that path, else the published one of that name."""
+    from gsp.planar import planar_design, read_planar_design
+
     if not _is_file(text, planar=True):
         return planar_design(text)
     design = read_planar_design(text)
@@ -112,5 +127,5 @@ def find_mechanism_or_design(text: str) -> Mechanism | Design:
     if _MECHANISM.match(text):
         return mechanism(text)
     known = (*design_names(), *(m.name for m in mechanisms()))
-    hint = PLANAR if text in planar_design_names() else HINT
+    hint = PLANAR if text in _planar_names() else HINT
     raise UnknownDesign("design or mechanism", text, known, hint)

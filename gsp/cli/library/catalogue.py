@@ -15,7 +15,6 @@ from gsp.errors import InvalidInput, UnknownName
 from gsp.files.knowledge import knowledge
 from gsp.files.tables import check_table, write_table
 from gsp.model.mechanism import NAMES
-from gsp.planar import table as planar_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,6 +98,8 @@ def catalogue(
     if designs:
         frame, columns, total = published_designs(), DESIGNS, "designs"
     elif planar:
+        from gsp.planar import table as planar_table
+
         frame, columns, total = planar_table(), PLANAR, "planar platforms"
     else:
         frame = _chosen(group or [], constraint or [], symmetric)
