@@ -4,6 +4,7 @@ import inspect
 import logging
 import re
 import sys
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import FunctionType
@@ -41,6 +42,12 @@ PLANE = PlanarDesign(
 )  # fmt: skip
 PLANE_Y = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
 FEW = {"rays": 2, "starts": 1, "connecting": False, "most": 1}
+
+
+@cache
+def flat(resolution):
+    """A region in a plane."""
+    return workspace.fixed_orientation(DESIGN, plane=PLANE_Y, resolution=resolution)
 
 
 def imported(progress):
@@ -88,7 +95,7 @@ CALLS = {
         lambda b: lee.octahedral_3_3(1.0, b), "b", [2.0], **p
     ),
     "gsp.workspace.labelled.boundary_curves": lambda p: workspace.boundary_curves(
-        workspace.fixed_orientation(DESIGN, plane=PLANE_Y, resolution=20.0), most=1, **p
+        flat(20.0), most=1, **p
     ),
     "gsp.workspace.boundary.mapping.section": lambda p: workspace.section(DESIGN, **FEW, **p),
     **{
@@ -104,15 +111,13 @@ CALLS = {
     "gsp.workspace.sets.questions.orientations": lambda p: workspace.orientations(
         DESIGN, HOME.position, resolution=2.0, **p
     ),
-    "gsp.workspace.sets.inside.regular.regular_parts": lambda p: workspace.fixed_orientation(
-        DESIGN, plane=PLANE_Y, resolution=20.0
-    ).regular_parts(**p),
-    "gsp.workspace.sets.inside.samples.index_sample": lambda p: workspace.fixed_orientation(
-        DESIGN, plane=PLANE_Y, resolution=20.0
-    ).index_sample("CTN", 5, **p),
-    "gsp.workspace.sets.inside.worst.worst": lambda p: workspace.fixed_orientation(
-        DESIGN, plane=PLANE_Y, resolution=1.0
-    ).worst("σ_min", length=1.0, budget=1000, **p),
+    "gsp.workspace.sets.inside.regular.regular_parts": lambda p: flat(20.0).regular_parts(**p),
+    "gsp.workspace.sets.inside.samples.index_sample": lambda p: flat(20.0).index_sample(
+        "CTN", 5, **p
+    ),
+    "gsp.workspace.sets.inside.worst.worst": lambda p: flat(1.0).worst(
+        "σ_min", length=1.0, budget=100, **p
+    ),
     "gsp.workspace.maps.index_map": lambda p: workspace.index_map(DESIGN, BOX, 1, ["CTN"], **p),
     "gsp.workspace.surfaces.surface": lambda p: workspace.surface(
         DESIGN, rotation=np.eye(3), counts=(2, 3), starts=1, **p

@@ -167,7 +167,7 @@ def curve_chain(
     --------
     >>> import gsp, numpy as np
     >>> d = gsp.catalogue.design("workspace-6-3")
-    >>> mapped = gsp.workspace.section(d, rays=[1.4, 4.9], starts=4, progress=False)
+    >>> mapped = gsp.workspace.section(d, rays=[1.4, 4.9], starts=4, connecting=False)
     >>> top = [mapped.curves[i].pose.position[:, 2].max() for i in mapped.find("-1111-")]
     >>> first = mapped.find("-1111-")[int(np.argmax(top))]
     >>> chain = gsp.workspace.curve_chain(mapped, first, np.pi / 2, -np.pi / 2)

@@ -91,5 +91,5 @@ def test_radii_whose_squares_overflow_are_refused(gsp):
 
 def test_the_order_of_a_section_is_that_of_its_angles(gsp):
     """Of any orientation: the angles of its bifurcation points, so that it is not refused."""
-    words = ("workspace", "workspace-6-3", "--rays", 2, "--starts", 2, "--no-connecting")
+    words = ("workspace", "workspace-6-3", "--rays", 1, "--starts", 1, "--no-connecting")
     assert gsp(*words).out != gsp(*words, "--order", "ZYX").out

@@ -234,7 +234,7 @@ def test_a_limit_without_bounds_is_the_reason_that_nothing_is_known():
 )
 def test_a_surface_has_the_printed_share_of_the_volume(tmp_path, kind, end):
     out = tmp_path / f"a.{end}"
-    text = run(NAME, *KINDS[kind][1], "--out", out).stdout
+    text = run(NAME, *KINDS[kind][1], "--resolution", 1.2, "--out", out).stdout
     low, high = _bracket(text)
     share = float(re.search("at least ([0-9.]+) % of the volume", text).group(1))
     size = trimesh.load(out, force="mesh").volume

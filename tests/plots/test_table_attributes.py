@@ -11,6 +11,7 @@ import pytest
 import gsp
 from gsp import plots, sweeps
 from gsp.errors import GspError, InvalidInput
+from tests import campaign
 
 DESIGN = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
 STEPS = np.array([0.0, 0.1, 0.2])
@@ -43,10 +44,11 @@ def test_only_errors_of_the_library_are_raised(name):
     table = make()
     call(table)
     plt.close("all")
+    rng = np.random.default_rng(len(name))
     for key in list(table.attrs):
-        for wrong in WRONG:
+        for i in rng.permutation(len(WRONG))[: campaign.count(3, len(WRONG))]:
             changed = table.copy()
-            changed.attrs = {**table.attrs, key: wrong}
+            changed.attrs = {**table.attrs, key: WRONG[i]}
             with suppress(GspError):
                 call(changed)
             plt.close("all")

@@ -167,7 +167,7 @@ def test_what_the_budget_ends_is_stated():
 
 def test_what_the_greatest_number_of_curves_ends_is_stated():
     """Also where every curve that was followed is complete."""
-    whole = any_orientation()
+    _, _, _, whole = fixed(None)
     number = len(whole.section.curves)
     some = boundary_curves(whole.region, most=number - 2)
     assert (len(some.section.curves), some.incomplete) == (number - 2, ())

@@ -24,9 +24,17 @@ from gsp.workspace.sets.tree.boxes import components, located
 from gsp.workspace.sets.tree.cuts import shares, sides
 from gsp.workspace.sets.tree.symmetry import mirror_planes
 from tests.campaign import count
+from tests.interpreted import interpreted
 from tests.reference.workspace_samples import product_of_turns, rotations
 from tests.reference.workspace_samples import reachable as found_by_samples
 from tests.support import random_design, turn
+
+
+@pytest.fixture
+def plain():
+    """Run compiled functions that are called alone as plain Python."""
+    with interpreted("gsp.workspace.sets.compiled", "gsp.kernels.compiled", __name__):
+        yield
 
 
 def strokes_about(bare, home, wide, rng):
@@ -60,6 +68,7 @@ def exact_turn(vectors):
     return Rotation.from_rotvec(vectors).as_matrix()
 
 
+@pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize("wide", [0.03, 0.1])
 def test_witnesses_are_feasible_beyond_their_cut(wide):
     checked, whole = 0, 0
@@ -84,6 +93,7 @@ def test_witnesses_are_feasible_beyond_their_cut(wide):
     assert whole > 0
 
 
+@pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize("ranged", [False, True])
 def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
     radii, many = [], count(400, 3000)
@@ -125,6 +135,7 @@ def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
     assert min(radii) < 1.0
 
 
+@pytest.mark.usefixtures("plain")
 def test_a_sum_rises_by_turns_as_its_formula_does():
     rng = np.random.default_rng(6)
     for _ in range(100):
