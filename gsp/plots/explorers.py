@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from gsp.exploration.fronts import Objectives
+from gsp.exploration.sides import Objectives
 from gsp.exploration.space import Space
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design

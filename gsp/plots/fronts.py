@@ -13,14 +13,12 @@ from numpy.typing import NDArray
 from gsp import arguments
 from gsp.checks import check_items
 from gsp.errors import InvalidInput, brief, expected
-from gsp.exploration.fronts import (
+from gsp.exploration.fronts import knee, merits_of, nondominated
+from gsp.exploration.sides import (
     Objectives,
     better_sides,
     index_column,
-    knee,
     known_side,
-    merits_of,
-    nondominated,
     stated_sides,
 )
 from gsp.figures import style
@@ -158,7 +156,7 @@ def parallel(
         Without matplotlib.
     """
     by = arguments.text("by", by)
-    lines = parallel_lines(table, columns, by, better or {})
+    lines = parallel_lines(table, columns, by, {} if better is None else better)
     shades = column(table, by)[lines.rows]
     with style():
         ax = axes_or_new(ax, COLUMN_WIDTH * (len(lines.names) + 1), 4.0)

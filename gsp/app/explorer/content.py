@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from gsp.errors import InvalidInput, expected
-from gsp.exploration.fronts import Objectives, better_sides, index_column, known_side
+from gsp.exploration.sides import Objectives, better_sides, index_column, known_side
 from gsp.exploration.space import Space
 from gsp.figures.gaps import gap_words
 from gsp.geometry.vectors import Array

@@ -18,7 +18,7 @@ from gsp.app.explorer.spaces import chosen_rows, designs_of_rows, packed_spaces
 from gsp.app.scene.pages import PageFigure, filled, scene_sources, scene_style, script_text
 from gsp.checks import check_installed, check_type, is_a
 from gsp.errors import InvalidInput, expected
-from gsp.exploration.fronts import Objectives, better_sides
+from gsp.exploration.sides import Objectives, better_sides
 from gsp.exploration.space import Space
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design

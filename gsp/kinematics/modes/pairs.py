@@ -23,7 +23,7 @@ PAIRED_SHARE = 1e-5
 LEAST_GAP, MOST_GAP = 3e-7, 1e-3
 # Step of the second derivative, Newton steps to the middle of a pair, and shares of singular values
 # that these leave out.
-CURVATURE_STEP, MIDDLE_STEPS, MIDDLE_RCOND = 1e-4, 6, 1e-4
+BENDING_STEP, MIDDLE_STEPS, MIDDLE_RCOND = 1e-4, 6, 1e-4
 # Imaginary part of a real solution at most, as a share of the distance of the two.
 REAL_SHARE = 0.1
 
@@ -57,10 +57,9 @@ def pair_at(layout: Layout, parameters: Complex, pose: Complex) -> Pair | None:
         return None
     left, values, right = np.linalg.svd(slopes[0])
     along, across = right[-1].conj(), left[:, -1].conj()
-    h = CURVATURE_STEP
-    ahead, behind = linear(layout, parameters, np.stack((middle + h * along, middle - h * along)))[
-        1
-    ]
+    h = BENDING_STEP
+    both = np.stack((middle + h * along, middle - h * along))
+    ahead, behind = linear(layout, parameters, both)[1]
     curvature = across @ ((ahead - behind) / (2.0 * h)) @ along
     if abs(curvature) <= np.finfo(float).tiny:
         return None
