@@ -277,7 +277,7 @@ def test_sizes_of_bodies_are_bounded_by_what_all_obstacles_leave(body):
 
 
 def test_few_of_the_cells_are_looked_at_for_the_largest_disc(monkeypatch):
-    region = gsp.workspace.fixed_orientation(SHELL, limits=ABOVE, plane=PLANE, resolution=0.015)
+    region = gsp.workspace.fixed_orientation(SHELL, limits=ABOVE, plane=PLANE, resolution=0.01)
     sizes, counts = inscribed._sizes, []
     monkeypatch.setattr(
         inscribed, "_sizes", lambda p, *others: (counts.append(len(p)), sizes(p, *others))[1]

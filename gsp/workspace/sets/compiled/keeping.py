@@ -44,12 +44,15 @@ def worst_rotation(
     frame, trial = np.empty(CELL_FRAME_SCALARS), np.empty(3)
     best = np.inf
     for number in range(TRIALS_PER_ANGLE**3):
-        left = number
+        left, again = number, False
         for k in range(3):
             trial[k] = low[k] + (high[k] - low[k]) * (left % TRIALS_PER_ANGLE) / (
                 TRIALS_PER_ANGLE - 1.0
             )
+            again = again or (high[k] == low[k] and left % TRIALS_PER_ANGLE > 0)
             left //= TRIALS_PER_ANGLE
+        if again:  # of an angle without a range all trials are the first one
+            continue
         value = _margin(p, leg, side, trial, turns, frame)
         if value < best:
             best = value
@@ -57,6 +60,8 @@ def worst_rotation(
     step = 0.5 / (TRIALS_PER_ANGLE - 1.0)
     for _ in range(STEP_HALVINGS):
         for k in range(3):
+            if high[k] == low[k]:
+                continue
             for sign in (-1.0, 1.0):
                 trial[:] = angles
                 trial[k] += sign * step * (high[k] - low[k])
