@@ -407,7 +407,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "table": FRONT, "objectives": {"score": "higher", "feasible": "higher"},
         "designs": None, "columns": ["score", "feasible"], "by": "score", "pose": None, "most": 5,
     },
-    "plots.fronts.parallel": {
+    "plots.parallels.parallel": {
         "table": FRONT, "columns": ["score", "feasible"], "by": "score", "ax": None,
     },
     "plots.rankings.ranges": {"table": Later("ranked"), "index": "control_number"},

@@ -20,6 +20,7 @@ DIRECTIONS = ("higher", "lower")
 # Columns of tables that are not of an index, and which side is better.
 OTHER_COLUMNS = {
     **dict.fromkeys(("score", "feasible", "within_strokes"), "higher"),
+    "rank": "lower",
     **{f"{name}_{end}": "higher" for name in WORKSPACES for end in (LOW, HIGH)},
 }
 # Ends of the names of columns of an index.

@@ -206,7 +206,7 @@ def test_files_are_not_replaced(tmp_path):
         ({"objectives": COLUMNS[:1]}, "at least two columns"),
         ({"objectives": ["height", "score"]}, '"higher" or "lower"'),
         ({"objectives": {"maker": "lower", "score": "higher"}}, "numbers"),
-        ({"table": TABLE.assign(condition_number_max=np.inf)}, "a row with finite objectives"),
+        ({"table": TABLE.assign(condition_number_max=np.inf)}, "a row with finite objectives that"),
         ({"columns": ["height"]}, "from 2 to 12 columns"),
         ({"columns": ["height", "mass"]}, "columns of the table"),
         ({"by": "maker"}, "numbers"),

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 
@@ -193,6 +194,10 @@ def test_a_task_that_the_design_cannot_meet_is_said_first():
     leg = np.linalg.norm(LIFT.platform_points[0] + HIGH[0] - LIFT.base_points[0])
     assert f"d1 = {leg:.6g} > 2.6, and 5 more." in first
     assert text_of(page.tasks.at_each(found)).count(" > 2.6") == 12
+    assert "0 of 2 (0 %)" in text_of(page.tasks.task(found))
+    # Strokes are not compared, other limits are.
+    limits = gsp.Limits(position=[(-1.0, 1.0), (-1.0, 1.0), (0.0, 0.5)])
+    found = study_of(LIFT, None, replace(task, limits=limits), None)
     text = text_of(page.tasks.task(found))
     assert "0 of 2 (0 %)" in text
     assert "None of the 196 designs has a place" in text
@@ -407,6 +412,40 @@ def test_strokes_of_the_task_are_those_of_all_sections():
         assert "The limits are the strokes of the task." in shown
         assert ("would pass the stroke" in " ".join(summary(found))) == (left < 0)
     assert "No position in this plane is within the limits." in page.proofs.workspace(found)
+
+
+def test_strokes_of_a_task_are_no_limits_of_other_actuators():
+    """The other mechanisms are compared without them, and so is a design with seven legs."""
+    design = gsp.hexapod(200.0, 0.3, 100.0, 0.4, 250.0, unit="mm")
+    box = gsp.PoseBox.around(design.home, [5.0] * 3 + [0.03] * 3)
+    limits = gsp.Limits(strokes=[(143.0, 429.0)] * 6)
+    wanted = {"wanted": ["mean CTN"], "samples": 10, "unit": "mm"}
+    with_strokes = study_of(design, None, gsp.Task(poses=box, limits=limits, **wanted), None)
+    without = study_of(design, None, gsp.Task(poses=box, **wanted), None)
+    scores = [
+        one.ranked.set_index("design")["score"].sort_index() for one in (with_strokes, without)
+    ]
+    assert scores[0].equals(scores[1])
+    assert "compared without strokes" in text_of(page.tasks.task(with_strokes))
+    rng = np.random.default_rng(3)
+    seven = gsp.Design(["D1"] * 7, *rng.normal(size=(2, 7, 3)), home=gsp.Pose([0.0, 0.0, 3.0]))
+    limits = gsp.Limits(strokes=[(0.0, 9.0)] * 7)
+    box = gsp.PoseBox.around(seven.home, [0.01] * 6)
+    task = gsp.Task(poses=box, limits=limits, wanted=["mean CTN"], samples=4)
+    assert study_of(seven, None, task, None).ranked["score"].notna().sum() > 1
+
+
+def test_length_and_ellipsoid_of_a_task_are_those_of_the_report():
+    design = gsp.catalogue.design(OCTAHEDRAL)
+    task = gsp.Task(
+        poses=design.home[None], wanted=["mean CTN"], length=1.25,
+        ellipsoid=gsp.Ellipsoid([1.0, 1.0, 0.5]),
+    )  # fmt: skip
+    found = study_of(design, None, task, None)
+    shown = text_of(page.parts.dimensions(found))
+    assert re.search(r"characteristic length\s+1.25[^,]*, of the task", shown)
+    assert "1 × 1 × 0.5" in shown
+    assert found.reading.index("condition_number_ellipsoid").reason == ""
 
 
 def test_limits_that_bound_no_position_are_said():

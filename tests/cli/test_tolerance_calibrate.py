@@ -92,6 +92,10 @@ def test_tables_that_cannot_be_used(gsp, machine):
     assert "one column 'd3'" in gsp("calibrate", "nominal.toml", "a.csv").error
     table.drop(columns="angle_2").to_csv("b.csv", index=False)
     assert "or x, y, z alone" in gsp("calibrate", "nominal.toml", "b.csv").error
+    table.assign(d7=1.0).to_csv("d.csv", index=False)
+    assert (
+        "d.csv: d7: no joint of nominal, not used" in gsp("calibrate", "nominal.toml", "d.csv").err
+    )
     table.assign(d1="long").to_csv("c.csv", index=False)
     assert (
         "column 'd1': expected a finite number" in gsp("calibrate", "nominal.toml", "c.csv").error

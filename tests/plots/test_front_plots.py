@@ -71,6 +71,33 @@ def test_a_stated_side_turns_an_axis_its_numbers_and_its_order(name):
     assert ax.get_xticklabels()[0].get_text().endswith("↓")
 
 
+def test_a_stated_side_turns_axes_of_texts_and_of_bools():
+    table = TABLE.assign(leaks=[True, False, True, False])
+    ax = plots.parallel(table, ["legs", "leaks"], better={"legs": "lower", "leaks": "lower"})
+    texts = {(note.xy[0], float(note.xy[1])): note.get_text() for note in ax.texts}
+    assert (texts[0, 1.0], texts[0, 0.0]) == ("D1", "D3")
+    assert (texts[1, 1.0], texts[1, 0.0]) == ("False", "True")
+    for line, row in zip(ax.collections[0].get_segments(), (1, 3, 2, 0), strict=True):
+        assert texts[0, line[0][1]] == table["legs"][row]
+        assert texts[1, line[1][1]] == str(table["leaks"][row])
+
+
+def test_ends_of_an_axis_that_differ_have_different_numbers():
+    table = TABLE.assign(radius=[0.9, 0.9000001, 0.90000005, 0.9])
+    ax = plots.parallel(table, ["radius", "score"])
+    texts = [note.get_text() for note in ax.texts if note.xy[0] == 0]
+    assert texts == ["0.9", "0.9000001"]
+
+
+def test_a_design_that_an_infinite_value_beats_is_not_on_the_front():
+    table = pd.DataFrame({"a": [np.inf, 1.0, 2.0, 3.0], "b": [1.0, 0.0, 2.0, 1.0]})
+    sides = {"a": "higher", "b": "lower"}
+    line = plots.front(table, sides).lines[0]
+    assert list(zip(line.get_xdata(), line.get_ydata(), strict=True)) == [(1.0, 0.0)]
+    with pytest.raises(InvalidInput, match="a row with finite objectives that no row beats"):
+        plots.front(table.assign(b=[0.0, 0.0, 2.0, 1.0]), sides)
+
+
 def test_values_near_the_largest_number_have_heights():
     table = TABLE.assign(radius=[-1e308, 1e308, 0.0, 5e307])
     lines = plots.parallel(table, ["radius", "score"]).collections[0].get_segments()
@@ -95,6 +122,10 @@ def test_few_very_large_values_make_a_scale_logarithmic():
         (plots.parallel, {"columns": ["radius", "mass"]}, "columns of the table"),
         (plots.parallel, {"columns": COLUMNS, "by": "legs"}, "numbers"),
         (plots.parallel, {"columns": COLUMNS, "better": {"mass": "lower"}}, "columns of the table"),
+        *(
+            (plots.parallel, {"columns": COLUMNS, "better": one}, "better: expected")
+            for one in ("", 0, [], np.zeros((2, 2)), pd.Series([1.0]), pd.DataFrame(), pd.NA)
+        ),
         (plots.parallel, {"columns": COLUMNS, "better": {"radius": "up"}}, '"higher" or "lower"'),
     ],
 )

@@ -17,7 +17,8 @@ from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.indices.table import ARROWS
 from gsp.plots.common.tables import column
-from gsp.plots.fronts import MOST_PARALLEL, MOST_TEXTS, front_rows, is_log, parallel_lines
+from gsp.plots.fronts import front_rows, is_log
+from gsp.plots.parallels import MOST_PARALLEL, MOST_TEXTS, parallel_lines
 
 # Columns that come last: they have one value for most designs, or say nothing of a value.
 LAST = ("rank", "mechanism", "class", "n_legs", "singular", "undefined", "error")

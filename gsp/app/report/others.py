@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def ranked(design: Design, task: Task) -> pd.DataFrame:
     """Return a design and the mechanisms on its anchor lines, ranked for a task, best first.
 
-    Where only the design has the strokes that the task takes, all of them are without strokes.
+    Strokes of the design, or of the task, are for its own actuators: all are without strokes.
 
     Raises
     ------
@@ -30,24 +30,25 @@ def ranked(design: Design, task: Task) -> pd.DataFrame:
     left = without_strokes(bare, short.limits)
     if not short.indices and left is None:
         raise InvalidInput("they have no strokes, which would bound the volumes that are wanted")
-    if only_this_has_strokes(design, task):
+    if has_strokes(design, task):
         design, short = bare, replace(short, limits=left)
     return assess([design, *on_template(design)], short, progress=False)
 
 
-def only_this_has_strokes(design: Design, task: Task) -> bool:
-    """Return whether a task takes the strokes of each design, which mechanisms do not have."""
+def has_strokes(design: Design, task: Task) -> bool:
+    """Return whether the strokes of a design, or those that the task has for it, are a limit."""
     limits = task.limits
-    return design.strokes is not None and limits is not None and limits.strokes is None
+    return limits is not None and (limits.strokes is not None or design.strokes is not None)
 
 
 def without_strokes(design: Design, limits: Limits | None) -> Limits | None:
-    """Return the limits of a design without strokes, None if nothing is left of them."""
+    """Return the limits without strokes of a design without them, None if nothing is left."""
+    left = None if limits is None else replace(limits, strokes=None)
     try:
-        bounded_quantities(design, limits, crossed=True)
+        bounded_quantities(design, left, crossed=True)
     except MissingParameter:
         return None
-    return limits
+    return left
 
 
 def quick(task: Task) -> Task:

@@ -19,6 +19,13 @@ from gsp.app.state.reading import IndexReading, powers
 from gsp.geometry.vectors import Array
 from gsp.rounding import digits_within, rounded_down
 
+# Where the characteristic length is from.
+LENGTH_WORDS = {
+    "design": "",
+    "task": ", of the task",
+    "chosen": ", chosen for this report",
+    "": ", chosen for this report",
+}
 # The index that has a section of its own.
 DISTANCE = "singularity_distance"
 
@@ -65,7 +72,7 @@ def _facts(study: Study) -> list[tuple[str, str]]:
         ("source", design.source or "not stated"),
         (
             "characteristic length",
-            length if design.characteristic_length else f"{length}, chosen for this report",
+            f"{length}{LENGTH_WORDS[study.length_of]}",
         ),
     ]
     if design.ellipsoid is not None:

@@ -85,11 +85,16 @@ class Study:
     ----------
     state : Session
         Design, pose, a characteristic length, and the maximum of |det J| if it is known.
+        The ellipsoid of a task is that of the design.
     task : Task or None
+        With the length of the state.
+    length_of : str
+        Where the length is from: "design", "task", "chosen" by the reader, or "" for the size.
     """
 
     state: Session
     task: Task | None
+    length_of: str = ""
 
     @cached_property
     def reading(self) -> Reading:
@@ -258,8 +263,11 @@ class Study:
 def study_of(design: Design, pose: Pose | None, task: Task | None, length: float | None) -> Study:
     """Return the study of a design at a pose, by default its home pose.
 
-    The length is the one that is given, else that of the task, of the design, or its size.
+    The length is the one that is given, else that of the task, of the design, or its size. The
+    ellipsoid is that of the task, else of the design.
     """
+    if task is not None and task.ellipsoid is not None:
+        design = design.replace(ellipsoid=task.ellipsoid)
     state = started(design, pose)
     given = length or (task.length if task is not None else None)
     try:
@@ -269,7 +277,9 @@ def study_of(design: Design, pose: Pose | None, task: Task | None, length: float
             raise
         raise InvalidInput(f"task, length: {error}") from error
     state = replace(state, maximum=attempted(lambda: known_maximum(design))[0])
-    return Study(state, None if task is None else replace(task, length=state.length))
+    own = "design" if design.characteristic_length else ""
+    origin = "chosen" if length else "task" if given else own
+    return Study(state, None if task is None else replace(task, length=state.length), origin)
 
 
 def attempted(part: Any) -> tuple[Any, str]:

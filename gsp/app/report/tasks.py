@@ -7,7 +7,7 @@ from html import escape
 import numpy as np
 
 from gsp.app.page.tables import number, table
-from gsp.app.report.others import only_this_has_strokes, quick
+from gsp.app.report.others import has_strokes, quick
 from gsp.app.report.parts import cells, listed, wide
 from gsp.app.report.study import Study, attempted
 from gsp.app.report.summary import bracket, measured, place_text
@@ -107,10 +107,10 @@ def _places(study: Study) -> str:
             f"{few if some else none}: no pose of the task is within the limits, or a value is "
             "undefined."
         )
-    if only_this_has_strokes(study.state.design, wanted):
+    if has_strokes(study.state.design, wanted):
         notes.append(
-            "The other mechanisms have no strokes. All designs of this table are compared without "
-            "strokes, also this one, whose values may differ from those above."
+            "The strokes are for the actuators of this design. All designs of this table are "
+            "compared without strokes, also this one, whose values may differ from those above."
         )
     text = wide(table(("design", "place", "score", *columns.values()), cells(rows)))
     return text + "".join(f"<p class=note>{note}</p>" for note in notes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -21,6 +22,8 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.model.design import Design
 
+# Names of columns that look like those of joints.
+JOINT_COLUMN = re.compile(r"(d|theta)\d+")
 # Coordinates that the table on the terminal lists, those that deviate most.
 MOST_ROWS = 12
 
@@ -139,6 +142,10 @@ def measured(design: Design, path: Path, order: str) -> tuple[Any, Any]:
     """
     readings = read_table("MEASUREMENTS", path, design.joint_names)
     _, header = next(table_rows(path))
+    known = {*design.joint_names, *POSE_COLUMNS}
+    others = [name for name in header if JOINT_COLUMN.fullmatch(name) and name not in known]
+    if others:
+        warn(f"{path}: {', '.join(others)}: no joint of {design.name or 'the design'}, not used")
     there = [name for name in POSE_COLUMNS if name in header]
     if not there:
         return readings, None
