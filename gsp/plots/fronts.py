@@ -47,7 +47,8 @@ def front(table: pd.DataFrame, objectives: Objectives, ax: Axes | None = None) -
     Raises
     ------
     InvalidInput
-        As `gsp.exploration.pareto`, on more than two objectives, or if no row has both.
+        As `gsp.exploration.pareto`, on more than two objectives, or if no row of the front has
+        finite ones.
     MissingSoftware
         Without matplotlib.
     """

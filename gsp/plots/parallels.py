@@ -150,7 +150,7 @@ def _draw(ax: Axes, lines: ParallelLines, shades: Array, by: str) -> None:
         ax.axvline(place, color="black", linewidth=0.8, zorder=3)
         for height, text in marks:
             ax.annotate(
-                plain(text), (place, height), (3, 0), textcoords="offset points", fontsize=7,
+                plain(short(text)), (place, height), (3, 0), textcoords="offset points", fontsize=7,
                 va="center", zorder=4,
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8},
             )  # fmt: skip
@@ -166,6 +166,11 @@ def _draw(ax: Axes, lines: ParallelLines, shades: Array, by: str) -> None:
     for spine in ax.spines.values():
         spine.set_visible(False)
     ax.figure.colorbar(drawn, ax=ax, label=label_of(by), pad=0.02)
+
+
+def short(text: str) -> str:
+    """Return a text of at most `LABEL_LETTERS` letters, so that it ends before the next axis."""
+    return text if len(text) <= LABEL_LETTERS else text[: LABEL_LETTERS - 1] + "…"
 
 
 def _lines_of(text: str) -> str:

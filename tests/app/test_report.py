@@ -448,6 +448,37 @@ def test_length_and_ellipsoid_of_a_task_are_those_of_the_report():
     assert found.reading.index("condition_number_ellipsoid").reason == ""
 
 
+@pytest.mark.parametrize(("own", "of_task"), [(0.2, 1.0), (1.0, 0.2)])
+def test_limits_have_the_ellipsoid_of_the_design(own, of_task):
+    """Not that of the task, as in `gsp.exploration.assess` and `gsp.certify`."""
+    axes = np.array([1.0, 1.0, 0.5])
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5).replace(
+        characteristic_length=1.0, ellipsoid=gsp.Ellipsoid(own * axes)
+    )
+    box = gsp.PoseBox.around(design.home, [0.05] * 3 + [0.02] * 3)
+    limits = gsp.Limits(indices=["CDN_OE <= 5"])
+    task = gsp.Task(
+        poses=box, wanted=["mean CDN_OE"], samples=20, limits=limits,
+        ellipsoid=gsp.Ellipsoid(of_task * axes),
+    )  # fmt: skip
+    found = study_of(design, None, task, None)
+    table = gsp.exploration.assess([design], task, progress=False)
+    assert found.within.ok.mean() == table["feasible"][0] == (own == 1.0)
+    assert found.certificate.status == gsp.certify(design, box, limits).status
+    value = gsp.indices.condition_number_ellipsoid(design.at(design.home), task.ellipsoid)
+    assert found.reading.index("condition_number_ellipsoid").value == pytest.approx(float(value))
+
+
+def test_a_score_that_is_not_that_of_the_task_is_stated():
+    design = gsp.catalogue.design(OCTAHEDRAL)
+    box = gsp.PoseBox.around(design.home, [0.01] * 6)
+    said = "The score of this table takes the worst values"
+    for wanted in (["proven worst CTN", "mean CTN"], ["mean CTN"]):
+        task = gsp.Task(poses=box, wanted=wanted, samples=4)
+        text = text_of(page.tasks.task(study_of(design, None, task, None)))
+        assert (said in text) == (len(wanted) == 2)
+
+
 def test_limits_that_bound_no_position_are_said():
     design = gsp.catalogue.design(OCTAHEDRAL).replace(strokes=None)
     task = gsp.Task(

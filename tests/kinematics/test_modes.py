@@ -625,6 +625,54 @@ def test_two_modes_beside_a_fold_are_told_apart(seed):
     assert gaps[two] / gaps[one] == pytest.approx(ratio, rel=0.05)
 
 
+# A triple solution of a random platform: position, and two columns of the rotation.
+CUSP = [0.2926042111179088, 0.7277920858865635, 1.8614506886639526]
+CUSP_TURN = [
+    [0.999882224633902, 0.004802981863322625, 0.014576289870187713],
+    [-0.006598161911926178, 0.9920430498620526, 0.12572609705141144],
+    [-0.013856446894610092, -0.1258074663349418, 0.9919579024806644],
+]
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-2])
+def test_beside_a_cusp_the_pose_of_the_joint_values_is_among_the_modes(shift):
+    """Three solutions are beside each other there, one of which or all are real."""
+    rng = np.random.default_rng(100)
+    design = gsp.Design(SIX, rng.normal(size=(6, 3)), 0.7 * rng.normal(size=(6, 3)))
+    pose = gsp.Pose(CUSP, CUSP_TURN).moved([0.0, 0.0, shift, 0.0, 0.0, 0.0])
+    modes = gsp.assembly_modes(design, design.at(pose).joints)
+    assert (modes.status, modes.n_complex, modes.n_paths) == ("found", 40, 40)
+    assert apart(modes, pose).min() < (1e-6 if shift < 1e-3 else 1e-9)
+    assert len(modes.side) % 2 == 0
+    assert modes.residual.max() < 1e-13
+
+
+@pytest.mark.parametrize("seed", range(count(3, 30)))
+def test_platforms_that_lie_in_their_base_plane_have_no_more_solutions_than_others(seed):
+    """Three motions are not controlled there; joint values are rounded."""
+    rng = np.random.default_rng(seed)
+    base, top = np.pad(rng.normal(size=(2, 6, 2)), ((0, 0), (0, 0), (0, 1)))
+    lengths = np.linalg.norm(top - base, axis=1) * (1.0 + 3e-14 * rng.normal(size=6))
+    modes = gsp.assembly_modes(gsp.Design(SIX, base, top), lengths, certify=True)
+    assert modes.n_paths == 40
+    assert not modes.certified[modes.multiplicity > 1].any()
+    real = int(modes.multiplicity.sum())
+    if modes.status != "incomplete":
+        assert (modes.n_complex + modes.n_singular - real) % 2 == 0
+
+
+def test_an_odd_number_of_solutions_that_are_not_real_is_incomplete(monkeypatch):
+    real = real_poses
+
+    def without_one(*arguments):
+        poses, places = real(*arguments)
+        return poses[1:], places[1:]
+
+    assert gsp.assembly_modes(DIETMAIER, LENGTHS).status == "found"
+    monkeypatch.setattr("gsp.kinematics.modes.modes.real_poses", without_one)
+    assert gsp.assembly_modes(DIETMAIER, LENGTHS).status == "incomplete"
+
+
 # --- certificates ---
 
 

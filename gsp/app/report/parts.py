@@ -32,7 +32,7 @@ DISTANCE = "singularity_distance"
 
 def geometry(study: Study) -> str:
     """Return the scene, which can be turned; a picture of it for paper; and the plan view."""
-    scene = figure(study.state.design.replace(strokes=study.strokes), study.state.pose)
+    scene = figure(study.shown.design, study.state.pose)
     return (
         f'<div class="scene">{scene._repr_html_()}</div>'
         f'<div class="pair"><div class="paper">{pictures.in_space(study)}</div>'
@@ -64,7 +64,7 @@ def dimensions(study: Study) -> str:
 
 
 def _facts(study: Study) -> list[tuple[str, str]]:
-    design = study.state.design
+    design = study.shown.design
     length = measured(study.length, design.unit, 6)
     facts = [
         ("mechanism", f"{design.mechanism.name}, class {design.mechanism.group}"),

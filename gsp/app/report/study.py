@@ -85,7 +85,6 @@ class Study:
     ----------
     state : Session
         Design, pose, a characteristic length, and the maximum of |det J| if it is known.
-        The ellipsoid of a task is that of the design.
     task : Task or None
         With the length of the state.
     length_of : str
@@ -98,9 +97,19 @@ class Study:
 
     @cached_property
     def reading(self) -> Reading:
-        """Joints, Jacobian and indices at the pose, with the strokes of the task if it has some."""
+        """Joints, Jacobian and indices at the pose."""
+        return read(self.shown, slow=True)
+
+    @cached_property
+    def shown(self) -> Session:
+        """The state with the strokes and the ellipsoid of the task, if it has some.
+
+        Limits of indices take the ellipsoid of the design, unless they have their own.
+        """
         design = self.state.design.replace(strokes=self.strokes)
-        return read(replace(self.state, design=design), slow=True)
+        if self.task is not None and self.task.ellipsoid is not None:
+            design = design.replace(ellipsoid=self.task.ellipsoid)
+        return replace(self.state, design=design)
 
     @property
     def strokes(self) -> ArrayLike | None:
@@ -224,7 +233,7 @@ class Study:
             return None
         if index.share_of or index.slow or self.reading.singular:
             return None
-        found = curves.ranking(self.state, index.name, self.state.design)
+        found = curves.ranking(self.shown, index.name, self.shown.design)
         some = [one for one in found if one.name in self.others and not np.isnan(one.value)]
         if not some:
             return None
@@ -263,11 +272,8 @@ class Study:
 def study_of(design: Design, pose: Pose | None, task: Task | None, length: float | None) -> Study:
     """Return the study of a design at a pose, by default its home pose.
 
-    The length is the one that is given, else that of the task, of the design, or its size. The
-    ellipsoid is that of the task, else of the design.
+    The length is the one that is given, else that of the task, of the design, or its size.
     """
-    if task is not None and task.ellipsoid is not None:
-        design = design.replace(ellipsoid=task.ellipsoid)
     state = started(design, pose)
     given = length or (task.length if task is not None else None)
     try:

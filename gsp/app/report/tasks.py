@@ -100,6 +100,11 @@ def _places(study: Study) -> str:
         for i in sorted({*range(min(MOST_DESIGNS, some)), here})
     ]
     notes = []
+    if tuple(quick(wanted).wanted) != tuple(wanted.wanted):
+        notes.append(
+            "The score of this table takes the worst values at the poses of the task in the place "
+            "of proven ones, and leaves volumes out."
+        )
     if some < len(ranked):
         none = f"None of the {len(ranked)} designs has a place"
         few = f"{len(ranked) - some} of the {len(ranked)} designs have no place"

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
+from gsp.kinematics.modes.beside import told_apart
 from gsp.kinematics.modes.equations import (
     Complex,
     Layout,
@@ -17,7 +18,6 @@ from gsp.kinematics.modes.equations import (
     linear,
     normal,
 )
-from gsp.kinematics.modes.pairs import told_apart
 from gsp.kinematics.modes.starts import (
     FIRST_CORRECTION,
     PATH_STEPS,
@@ -65,8 +65,9 @@ class Ends:
     ----------
     poses : (n, 7) complex array
         Each once.
-    paired : (n,) bool array
-        Which of them are one of two solutions beside each other; real ones have no imaginary part.
+    beside : (n,) bool array
+        Which of them are beside others, from which they were told apart; of these the real ones
+        have no imaginary part.
     singular : (n,) bool array
         Which of them are not regular: they are multiple, or lie on curves.
     multiplicity : (n,) int array
@@ -81,7 +82,7 @@ class Ends:
     """
 
     poses: Complex
-    paired: NDArray[np.bool_]
+    beside: NDArray[np.bool_]
     singular: NDArray[np.bool_]
     multiplicity: NDArray[np.int64]
     at_infinity: int
@@ -160,13 +161,14 @@ def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: 
     regular = np.vstack([route.regular for route in routes])
     regular = regular[distinct(regular)]
     shares = regular_shares(layout, parameters, regular)
-    found = told_apart(layout, parameters, regular, shares, *_clusters(routes[-1].singular))
+    last = routes[-1].regular
+    found = told_apart(layout, parameters, regular, shares, last, *_clusters(routes[-1].singular))
     regular, clusters, numbers = found.regular, found.clusters, found.numbers
     known = len(regular) + int(numbers.sum())
     infinite = max(min(max(route.diverged for route in routes), total - known), 0)
     return Ends(
         poses=np.vstack((regular, clusters)),
-        paired=np.concatenate((found.paired, np.zeros(len(clusters), dtype=bool))),
+        beside=np.concatenate((found.beside, np.zeros(len(clusters), dtype=bool))),
         singular=np.repeat([False, True], [len(regular), len(clusters)]),
         multiplicity=np.concatenate((np.ones(len(regular), dtype=np.int64), numbers)),
         at_infinity=infinite,
@@ -332,15 +334,15 @@ def _along(kernel: Complex) -> Complex:
 def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, NDArray[np.int64]]:
     """Return the real solutions, (m, 7), refined, and their places among the solutions.
 
-    Newton's method in real numbers decides of regular solutions, and how two that are beside each
-    other were told apart of those.
+    Newton's method in real numbers decides of regular solutions, and how they were told apart of
+    those beside each other.
     """
     size = np.abs(ends.poses).max(axis=1, initial=1.0, keepdims=True)
     small = np.where(ends.singular, REAL_MOVE_TOLERANCE, IMAGINARY_TOLERANCE)
     imaginary = (np.abs(ends.poses.imag) / size).max(axis=1, initial=0.0)
-    places = np.flatnonzero(np.where(ends.paired, imaginary == 0.0, imaginary < small))
+    places = np.flatnonzero(np.where(ends.beside, imaginary == 0.0, imaginary < small))
     poses, singular = ends.poses[places].real.astype(np.complex128), ends.singular[places]
-    kept = ends.paired[places]
+    kept = ends.beside[places]
     free = ~singular & ~kept
     refined = follow(
         layout, parameters, parameters, poses[free], tight=FIRST_CORRECTION, most=PATH_STEPS

@@ -117,23 +117,27 @@ def refined(
     Newton's method with residuals in extended precision, where the machine has it: those of a pose
     of size 1e5 are differences of numbers of 1e10.
     """
-    exact: Any = poses.T.astype(np.clongdouble)
-    rows = parameters.astype(np.clongdouble)
+    exact: Any = poses.astype(np.clongdouble)
     last = np.full(len(poses), np.inf)
     for _ in range(REFINING_STEPS):
-        errors = [residual(f, row, exact) for f, row in zip(layout.forms, rows, strict=True)]
-        errors.append(dot(exact[:4], exact[:4]) - 1.0)
-        slopes = linear(layout, parameters, exact.T.astype(np.complex128))[1]
+        errors = extended_residuals(layout, parameters, exact).astype(np.complex128)
+        slopes = linear(layout, parameters, exact.astype(np.complex128))[1]
         try:
-            steps = np.linalg.solve(
-                slopes, np.stack(errors, axis=-1).astype(np.complex128)[..., None]
-            )
+            steps = np.linalg.solve(slopes, errors[..., None])[..., 0]
         except np.linalg.LinAlgError:
             break
-        exact = exact - steps[..., 0].T
+        exact = exact - steps
         with np.errstate(invalid="ignore"):
-            last = np.abs(steps[..., 0]).max(axis=1) / np.abs(exact).max(axis=0).astype(float)
-    return exact.T.astype(np.complex128), last
+            last = np.abs(steps).max(axis=1) / np.abs(exact).max(axis=1).astype(float)
+    return exact.astype(np.complex128), last
+
+
+def extended_residuals(layout: Layout, parameters: Complex, poses: Any) -> Any:
+    """Return residuals at poses (m, 7), with x · x − 1 last, (m, 7), in extended precision."""
+    exact: Any = poses.T.astype(np.clongdouble)
+    rows = parameters.astype(np.clongdouble)
+    errors = [residual(f, row, exact) for f, row in zip(layout.forms, rows, strict=True)]
+    return np.stack([*errors, dot(exact[:4], exact[:4]) - 1.0], axis=-1)
 
 
 def order_of(legs: Sequence[str]) -> tuple[tuple[str, ...], NDArray[np.int64]]:

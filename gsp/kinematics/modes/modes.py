@@ -77,7 +77,8 @@ class AssemblyModes(ReadOnly):
         confirmed in `catalogue/root_counts.csv` as many as were known. "multiple": the same, some
         of them multiple. These are singular poses, and found to about half of the digits.
         "moving": the joint values allow a motion, and there are poses besides those listed.
-        "incomplete": some paths were lost, and modes may be missing; also if a distance is more
+        "incomplete": some paths were lost, or an odd number of solutions is not real, and modes may
+        be missing; also if a distance is more
         than 1e6 times `design.rms_radius`. "undefined": joint values that are NaN or none that a
         joint can have; there are no poses. "impossible": two joint values contradict each other,
         whatever the pose, by a triangle inequality between the anchors; there are no poses.
@@ -213,7 +214,7 @@ def _result(
     radius = np.full(len(solutions), np.nan)
     if certify:
         centres = np.hstack((small.quaternion[:, [3, 0, 1, 2]], small.position))
-        radius = certified(design, target, centres)
+        radius = np.where(ends.singular[places], np.nan, certified(design, target, centres))
     singular = ends.singular[places]
     side, ratio = _regularity(system, small)
     regular, total = int((~ends.singular).sum()), int(ends.multiplicity.sum())
@@ -230,14 +231,15 @@ def _result(
         n_infinite=ends.at_infinity,
         n_lost=ends.lost,
         n_paths=total + ends.at_infinity + ends.lost,
-        status=_status(ends, total - regular),
+        status=_status(ends, total - regular, total - int(ends.multiplicity[places].sum())),
     )
 
 
-def _status(ends: Ends, multiple: int) -> str:
+def _status(ends: Ends, multiple: int, complex_ones: int) -> str:
+    """Return the status; solutions that are not real are pairs of conjugates."""
     if ends.moving:
         return "moving"
-    if ends.lost or ends.excess:
+    if ends.lost or ends.excess or complex_ones % 2:
         return "incomplete"
     return "multiple" if multiple else "found"
 
