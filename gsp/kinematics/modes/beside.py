@@ -36,7 +36,7 @@ CLUSTER_REACH = 1e-4
 # Coefficients beyond the last that counts, as a share of the largest one, at most.
 TAIL_SHARE = 1e-6
 # Newton steps to the middle and along the curve, and shares of singular values that are left out.
-MIDDLE_STEPS, CURVE_STEPS, MIDDLE_RCOND = 6, 8, 1e-4
+MIDDLE_STEPS, ALONG_STEPS, MIDDLE_RCOND = 6, 8, 1e-4
 # Imaginary part of a pose that is taken for real at the middle, as a share of its size.
 REAL_MIDDLE = 1e-3
 
@@ -94,7 +94,7 @@ class Curve(NamedTuple):
         bordered = np.zeros((len(steps), 8, 8), dtype=np.complex128)
         bordered[:, :7, 7], bordered[:, 7, :7] = -self.across, self.along.conj()
         last = np.inf
-        for _ in range(CURVE_STEPS):
+        for _ in range(ALONG_STEPS):
             bordered[:, :7, :7] = linear(self.layout, self.parameters, poses)[1]
             if not np.isfinite(bordered).all():
                 return None
