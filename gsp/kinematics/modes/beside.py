@@ -24,7 +24,7 @@ from gsp.kinematics.modes.equations import (
 
 # Share of the smallest singular value of a solution that may have others beside it, of equations
 # and unknowns in their own scales; and the least share of the second smallest one.
-BESIDE_SHARE, SECOND_SHARE = 1e-4, 1e-5
+BESIDE_SHARE, SECOND_SHARE = 1e-5, 1e-5
 # Solutions nearer to each other than this share of the size of the pose are one multiple solution,
 # as the rounding of joint values of a singular pose has this effect.
 LEAST_GAP = 3e-7
@@ -37,6 +37,10 @@ CLUSTER_REACH = 1e-4
 TAIL_SHARE = 1e-6
 # Newton steps to the middle and along the curve, and shares of singular values that are left out.
 MIDDLE_STEPS, ALONG_STEPS, MIDDLE_RCOND = 6, 8, 1e-4
+# A step along the curve after which the next one is that of rounding, as a share of the size.
+SETTLED_STEP = 1e-8
+# Change of r' by which it cannot vanish, as a share of r'.
+SINGLE_SHARE = 0.5
 # Imaginary part of a pose that is taken for real at the middle, as a share of its size.
 REAL_MIDDLE = 1e-3
 
@@ -84,6 +88,17 @@ class Curve(NamedTuple):
         """Whether the middle is real, and real steps lead to real poses."""
         return not self.middle.imag.any()
 
+    def single(self, reach: float) -> bool:
+        """Whether r has one zero within a distance of the middle at most.
+
+        It has where the real part of r'(t) / r'(0) is positive all around; it is looked at in four
+        directions.
+        """
+        steps = reach * np.array([0.0, 1.0, -1.0, 1j, -1j])
+        slopes = linear(self.layout, self.parameters, self.middle + steps[:, None] * self.along)[1]
+        rates = (slopes @ self.along) @ self.across.conj()
+        return bool((np.abs(rates[1:] - rates[0]) < SINGLE_SHARE * np.abs(rates[0])).all())
+
     def at(self, steps: Complex) -> tuple[Complex, Complex] | None:
         """Return the poses (n, 7) at steps (n,) along the motion, and what is left there, (n,).
 
@@ -106,7 +121,9 @@ class Curve(NamedTuple):
             except np.linalg.LinAlgError:
                 return None
             poses, rest = poses - step[:, :7], rest - step[:, 7]
-            last = float(np.abs(step[:, :7]).max())
+            before, last = last, float(np.abs(step[:, :7]).max())
+            if before < SETTLED_STEP * _size(self.middle):  # this step was that of rounding
+                break
         return (poses, rest) if last < LEAST_GAP * 1e-3 * _size(self.middle) else None
 
 
@@ -116,7 +133,7 @@ def beside(layout: Layout, parameters: Complex, pose: Complex) -> Beside | None:
     None if there is none, or if more than one motion is hardly controlled there.
     """
     curve = _curve(layout, parameters, pose)
-    if curve is None:
+    if curve is None or curve.single(INNER * RADIUS * _size(curve.middle)):
         return None
     radius = RADIUS * _size(curve.middle)
     circle = radius * np.exp(2j * np.pi * np.arange(SAMPLES) / SAMPLES)
