@@ -61,7 +61,9 @@ def front(table: pd.DataFrame, objectives: Objectives, ax: Axes | None = None) -
     there = np.isfinite(ends).all(axis=0)
     with style():
         ax = axes_or_new(ax, 6.4, 4.8)
-        ax.scatter(ends[0][there], ends[1][there], s=12, color=GREY, label="designs", zorder=1)
+        infinite = int((~there & ~np.isnan(ends).any(axis=0)).sum())
+        label = f"designs ({infinite} with infinite values not drawn)" if infinite else "designs"
+        ax.scatter(ends[0][there], ends[1][there], s=12, color=GREY, label=label, zorder=1)
         along = [end[kept] for end in ends]
         ax.plot(*along, "o-", color=FRONT_COLOUR, markersize=4, linewidth=1, label="front")
         ax.plot(

@@ -169,8 +169,9 @@ def _draw(ax: Axes, lines: ParallelLines, shades: Array, by: str) -> None:
 
 
 def short(text: str) -> str:
-    """Return a text of at most `LABEL_LETTERS` letters, so that it ends before the next axis."""
-    return text if len(text) <= LABEL_LETTERS else text[: LABEL_LETTERS - 1] + "…"
+    """Return a text of at most `LABEL_LETTERS` letters, with its beginning and its end."""
+    half = LABEL_LETTERS // 2
+    return text if len(text) <= LABEL_LETTERS else f"{text[: half - 1]}…{text[-half:]}"
 
 
 def _lines_of(text: str) -> str:

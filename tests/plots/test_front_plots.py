@@ -82,6 +82,13 @@ def test_a_stated_side_turns_axes_of_texts_and_of_bools():
         assert texts[1, line[1][1]] == str(table["leaks"][row])
 
 
+def test_long_texts_keep_their_ends():
+    table = TABLE.assign(maker=[f"a very long name of a maker, number {i}" for i in range(4)])
+    ax = plots.parallel(table, ["maker", "score"])
+    texts = [note.get_text() for note in ax.texts if note.xy[0] == 0]
+    assert texts == [f"a very l… number {i}" for i in range(4)]
+
+
 def test_ends_of_an_axis_that_differ_have_different_numbers():
     table = TABLE.assign(radius=[0.9, 0.9000001, 0.90000005, 0.9])
     ax = plots.parallel(table, ["radius", "score"])
@@ -92,7 +99,9 @@ def test_ends_of_an_axis_that_differ_have_different_numbers():
 def test_a_design_that_an_infinite_value_beats_is_not_on_the_front():
     table = pd.DataFrame({"a": [np.inf, 1.0, 2.0, 3.0], "b": [1.0, 0.0, 2.0, 1.0]})
     sides = {"a": "higher", "b": "lower"}
-    line = plots.front(table, sides).lines[0]
+    ax = plots.front(table, sides)
+    line, shown = ax.lines[0], [text.get_text() for text in ax.get_legend().get_texts()]
+    assert shown[0] == "designs (1 with infinite values not drawn)"
     assert list(zip(line.get_xdata(), line.get_ydata(), strict=True)) == [(1.0, 0.0)]
     with pytest.raises(InvalidInput, match="a row with finite objectives that no row beats"):
         plots.front(table.assign(b=[0.0, 0.0, 2.0, 1.0]), sides)

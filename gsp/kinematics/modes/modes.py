@@ -28,6 +28,9 @@ LARGEST_DISTANCE_SIZES = 1e6
 # Joint error above which a mode is polished, how often, and the singular values that count then.
 POLISHED_RESIDUAL, JOINT_STEPS, POLISHED_RCOND = 1e-14, 3, 1e-12
 
+# Largest residual of a regular mode.
+ROUGH_RESIDUAL = 1e-10
+
 # What each status but "found" means, for people.
 STATUS_MEANINGS = MappingProxyType({
     "multiple": "some of the modes are singular poses, found to about half of the digits",
@@ -77,10 +80,11 @@ class AssemblyModes(ReadOnly):
         confirmed in `catalogue/root_counts.csv` as many as were known. "multiple": the same, some
         of them multiple. These are singular poses, and found to about half of the digits.
         "moving": the joint values allow a motion, and there are poses besides those listed.
-        "incomplete": some paths were lost, or an odd number of solutions is not real, and modes may
-        be missing; also if a distance is more
-        than 1e6 times `design.rms_radius`. "undefined": joint values that are NaN or none that a
-        joint can have; there are no poses. "impossible": two joint values contradict each other,
+        Where two or more motions are hardly controlled, other modes near these may be missing.
+        "incomplete": some paths were lost, an odd number of solutions is not real, or a regular
+        mode has a residual above 1e-10, and modes may be missing or wrong; also if a distance is
+        more than 1e6 times `design.rms_radius`. "undefined": joint values that are NaN or none that
+        a joint can have; there are no poses. "impossible": two joint values contradict each other,
         whatever the pose, by a triangle inequality between the anchors; there are no poses.
     """
 
@@ -208,6 +212,7 @@ def _result(
     certify: bool,
 ) -> AssemblyModes:
     system = centred(design)
+    solutions[:, :4] /= np.linalg.norm(solutions[:, :4], axis=1, keepdims=True)
     small = unchecked(Pose, solutions[:, 4:], rotations(solutions.astype(np.complex128)).real)
     small = _polished(system, system.joints_from(target), small)
     poses = system.pose_to(small)
@@ -218,9 +223,12 @@ def _result(
     singular = ends.singular[places]
     side, ratio = _regularity(system, small)
     regular, total = int((~ends.singular).sum()), int(ends.multiplicity.sum())
+    residual = _residual(design, target, poses)
+    rough = bool((residual[~singular] > ROUGH_RESIDUAL).any())
+    odd = (total - int(ends.multiplicity[places].sum())) % 2 == 1  # others are conjugates
     return AssemblyModes(
         poses=poses,
-        residual=_residual(design, target, poses),
+        residual=residual,
         side=np.where(singular, 0.0, side),
         condition=np.where(singular, np.inf, ratio),
         multiplicity=ends.multiplicity[places],
@@ -231,15 +239,14 @@ def _result(
         n_infinite=ends.at_infinity,
         n_lost=ends.lost,
         n_paths=total + ends.at_infinity + ends.lost,
-        status=_status(ends, total - regular, total - int(ends.multiplicity[places].sum())),
+        status=_status(ends, total - regular, doubtful=rough or odd),
     )
 
 
-def _status(ends: Ends, multiple: int, complex_ones: int) -> str:
-    """Return the status; solutions that are not real are pairs of conjugates."""
+def _status(ends: Ends, multiple: int, *, doubtful: bool) -> str:
     if ends.moving:
         return "moving"
-    if ends.lost or ends.excess or complex_ones % 2:
+    if ends.lost or ends.excess or doubtful:
         return "incomplete"
     return "multiple" if multiple else "found"
 
