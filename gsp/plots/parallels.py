@@ -150,8 +150,8 @@ def _draw(ax: Axes, lines: ParallelLines, shades: Array, by: str) -> None:
         ax.axvline(place, color="black", linewidth=0.8, zorder=3)
         for height, text in marks:
             ax.annotate(
-                plain(short(text)), (place, height), (3, 0), textcoords="offset points", fontsize=7,
-                va="center", zorder=4,
+                plain(_short(text)), (place, height), (3, 0), textcoords="offset points",
+                fontsize=7, va="center", zorder=4,
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8},
             )  # fmt: skip
     ax.set_xlim(-0.15, places[-1] + 0.45)
@@ -168,7 +168,7 @@ def _draw(ax: Axes, lines: ParallelLines, shades: Array, by: str) -> None:
     ax.figure.colorbar(drawn, ax=ax, label=label_of(by), pad=0.02)
 
 
-def short(text: str) -> str:
+def _short(text: str) -> str:
     """Return a text of at most `LABEL_LETTERS` letters, with its beginning and its end."""
     half = LABEL_LETTERS // 2
     return text if len(text) <= LABEL_LETTERS else f"{text[: half - 1]}…{text[-half:]}"

@@ -20,12 +20,7 @@ from gsp.geometry.vectors import Array
 from gsp.rounding import digits_within, rounded_down
 
 # Where the characteristic length is from.
-LENGTH_WORDS = {
-    "design": "",
-    "task": ", of the task",
-    "chosen": ", chosen for this report",
-    "": ", chosen for this report",
-}
+LENGTH_WORDS = {"design": "", "task": ", of the task", "report": ", chosen for this report"}
 # The index that has a section of its own.
 DISTANCE = "singularity_distance"
 

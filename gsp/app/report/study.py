@@ -88,12 +88,12 @@ class Study:
     task : Task or None
         With the length of the state.
     length_of : str
-        Where the length is from: "design", "task", "chosen" by the reader, or "" for the size.
+        Where the length is from: "design", "task", or "report" for another one.
     """
 
     state: Session
     task: Task | None
-    length_of: str = ""
+    length_of: str
 
     @cached_property
     def reading(self) -> Reading:
@@ -283,8 +283,8 @@ def study_of(design: Design, pose: Pose | None, task: Task | None, length: float
             raise
         raise InvalidInput(f"task, length: {error}") from error
     state = replace(state, maximum=attempted(lambda: known_maximum(design))[0])
-    own = "design" if design.characteristic_length else ""
-    origin = "chosen" if length else "task" if given else own
+    own = "design" if design.characteristic_length else "report"
+    origin = "report" if length else "task" if given else own
     return Study(state, None if task is None else replace(task, length=state.length), origin)
 
 
