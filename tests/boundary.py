@@ -126,6 +126,7 @@ PLANAR = planar.PlanarDesign(
 PLANAR_POSE = planar.PlanarPose([0.1, 0.2], 0.3)
 OCTAHEDRON = catalogue.design("lee-2000-3-3")
 ONE_MODE = gsp.kinematics.AssemblyModes(
+    joints=np.ones(6), on_branches=np.ones(1, dtype=bool),
     poses=gsp.Pose([[0.0, 0.0, 1.0]]), residual=np.zeros(1), side=np.ones(1), condition=np.ones(1),
     multiplicity=np.ones(1, dtype=int), certified=np.zeros(1, dtype=bool), radius=np.zeros(1),
     n_complex=16, n_singular=0, n_infinite=0, n_lost=0, n_paths=16, status="found",

@@ -1,15 +1,12 @@
-"""Forward kinematics of designs with legs that are driven at the base.
-
-Locked drives hold the tips of their rods, so the pose is that of a design whose driven legs are
-D1 legs between tips and platform anchors, with the lengths of the rods.
-"""
+"""Legs that are driven at the base, for kinematics: with locked drives their rods are D1 legs."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from gsp.arguments import LARGEST_NUMBER
-from gsp.geometry.vectors import Array, norm
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, Mask, dot, norm
 from gsp.model.design import Design
 from gsp.model.rods import TIPS
 
@@ -43,21 +40,39 @@ def usable(joints: Array) -> bool:
     return bool((np.abs(joints) <= LARGEST_NUMBER**0.5).all())
 
 
-def on_branches(design: Design, joints: Array, position: Array, rotation: Array) -> bool:
-    """Whether all drives are on their branches at a pose with joint values (n,).
+def scales_of_held(design: Design, joints: Array, pose: Pose) -> tuple[Array, Array]:
+    """Return the scales of locked drives, and their cosines on the stated branches.
 
     Parameters
     ----------
     design : Design
     joints : (n,) array [unit of the design, rad]
-    position, rotation : (3,) and (3, 3) arrays
+    pose : Pose of batch shape (...)
+        With these joint values, on any branches.
+
+    Returns
+    -------
+    scales : (..., n) array [1, length]
+        As `Posture.drive_scales`, with the signs of the branches that the drives are on.
+    cosines : (..., n) array [1]
+        Of the rod and the velocity of its tip, times the stated branch: negative on the other one.
+        1 for joints that are not driven at the base.
+
+    *Source: docs/drives.md; ours*
     """
-    cosines: list[float] = []
-    for row, (leg, _) in enumerate(design.rows):
+    scales = np.ones((*pose.shape, len(design.rows)))
+    cosines = scales.copy()
+    for row, (leg, constraint) in enumerate(design.rows):
         drive = design.drives[leg]
-        if drive is not None:
+        if constraint.driven and drive is not None:
             line = design.base_directions[leg]
             tip, slope = TIPS[type(drive)](drive, design.base_points[leg], line, joints[row])
-            rod = position + rotation @ design.platform_points[leg] - tip
-            cosines.append(drive.branch * float(rod @ slope) / float(norm(rod) * norm(slope)))
-    return min(cosines) > -BRANCH_COSINE
+            rod = pose.position + pose.rotation @ design.platform_points[leg] - tip
+            scales[..., row] = dot(rod, np.broadcast_to(slope, rod.shape)) / norm(rod)
+            cosines[..., row] = drive.branch * scales[..., row] / norm(slope)
+    return scales, cosines
+
+
+def on_branches(cosines: Array) -> Mask:
+    """Whether all drives are on their branches, (...), from cosines (..., n) on these."""
+    return np.asarray((cosines > -BRANCH_COSINE).all(axis=-1))

@@ -15,10 +15,10 @@ from gsp.evaluation.backends import check_backend
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
-from gsp.kinematics.driven import held, on_branches, usable
+from gsp.kinematics.driven import held, on_branches, scales_of_held, usable
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
 
 Solver = Callable[[Centred, Array, Pose, float, int], tuple[Pose, Array]]
 
@@ -132,9 +132,9 @@ def forward(
     fallback : "modes" or None
         What follows where no path of regular postures leads to a pose, as from guesses half a turn
         away: nothing, or "modes", the nearest regular assembly mode that `gsp.assembly_modes` finds
-        (distances as in `gsp.nearest`), for six actuators, none of them a drive at the base. About
-        10 ms per element for SPS legs.
-        Such a pose has the status "nearest mode", and may be beyond singular postures.
+        (distances as in `gsp.nearest`), for six actuators, with drives at the base on their
+        branches. About 10 ms per element for SPS legs. Such a pose has the status "nearest mode",
+        and may be beyond singular postures.
 
     Returns
     -------
@@ -166,8 +166,6 @@ def forward(
     solver = _with_numpy if by_numpy else _with_compiled
     modes = check_fallback(fallback, target.shape[-1])
     if design.driven:
-        if modes:
-            check_undriven("design, for fallback='modes'", design)
         pose, numbers = _with_drives(solver, design, target, start, limit, most)
     else:
         pose, numbers = solver(centred(design), target, start, limit, most)
@@ -228,9 +226,10 @@ def _with_drives(
         near = guess[[i if guess.size > 1 else 0]]
         pose, numbers[i : i + 1] = solver(centred(rods), values[None], near, tolerance, most)
         position[i], rotation[i] = pose.position[0], pose.rotation[0]
-        found = numbers[i, 0] == CONVERGED
-        if found and not on_branches(design, joints[i], position[i], rotation[i]):
-            position[i], rotation[i], numbers[i, 0] = np.nan, np.nan, NOT_CONVERGED
+        if numbers[i, 0] == CONVERGED:
+            _, cosines = scales_of_held(design, joints[i], pose)
+            if not on_branches(cosines)[0]:
+                position[i], rotation[i], numbers[i, 0] = np.nan, np.nan, NOT_CONVERGED
     return unchecked(Pose, position, rotation), numbers
 
 

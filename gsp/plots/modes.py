@@ -10,8 +10,9 @@ from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array
+from gsp.kinematics.driven import held
 from gsp.kinematics.modes import AssemblyModes
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
 from gsp.plots.common.bodies import body
 from gsp.plots.common.style import (
     BLUE,
@@ -43,7 +44,9 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
     to a fifth of its panel, as by a mode that is far away; the title states it. They are in the
     order of `modes.poses` and numbered from 1. The colour of the platform is the sign of det J.
     Base and platform go through their anchor points. Legs of D2, D3 and D4 are drawn between their
-    feet on the lines, with the parts of the lines from the anchor points to the feet.
+    feet on the lines, with the parts of the lines from the anchor points to the feet. Legs that are
+    driven at the base are drawn as their rods, with lines from the base points to the tips; modes
+    on other branches than those of the design are labelled.
 
     Parameters
     ----------
@@ -72,16 +75,17 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
     >>> len(gsp.plots.assembly_modes(lift, modes).axes)
     8
     """
-    check_undriven("design", design)
+    check_type("design", design, Design)
     check_type("modes", modes, AssemblyModes)
     if len(modes.side) == 0:
         raise InvalidInput(expected("modes", "at least one real mode", f"none ({modes.status})"))
-    posture = design.at(modes.poses)
-    _check_joints(design, posture.joints)
+    fixed = held(design, modes.joints)[0] if design.driven else design
+    posture = fixed.at(modes.poses)
+    _check_joints(fixed, posture.joints)
     with style():
         anchors = modes.poses.position[:, None] + posture.lines.arm
         bottoms, tops = posture.segments.base_feet, posture.segments.platform_feet
-        bottoms = np.where(np.isnan(bottoms), design.base_points, bottoms)
+        bottoms = np.where(np.isnan(bottoms), fixed.base_points, bottoms)
         tops = np.where(np.isnan(tops), anchors, tops)
         base = np.broadcast_to(design.base_points, anchors.shape)
         figure, panels = space_panels(len(anchors), MODES_PANEL_SIDE, _columns(len(anchors)))
@@ -93,7 +97,8 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
             for ends in ((base[i], bottoms[i]), (anchors[i], tops[i])):
                 _draw_lines(ax, *ends, SAME_JOINT * design.rms_radius)
             _frame(ax, cubes[i])
-            ax.set_title(f"{i + 1}", fontsize=8, y=0.97)
+            label = f"{i + 1}" if modes.on_branches[i] else f"{i + 1}, other branch"
+            ax.set_title(label, fontsize=8, y=0.97)
         _dress(figure, design, modes, one_scale)
         return figure
 

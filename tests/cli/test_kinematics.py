@@ -101,6 +101,31 @@ def test_all_modes_are_printed_drawn_and_written(gsp):
     assert Path("modes.png").stat().st_size > 10_000
 
 
+def test_modes_of_driven_legs_state_whether_they_are_on_the_branches(gsp):
+    design = library.catalogue.design("lane-rotary")
+    joints = design.at(design.home).joints
+    values = " ".join(map(repr, joints.tolist()))
+    printed = gsp("forward", design.name, "--joints", values, "--all", "--out", "modes.csv")
+    assert "4 real of 40 complex assembly modes" in printed.out
+    table = pd.read_csv("modes.csv")
+    angles = table[["angle_1", "angle_2", "angle_3"]].to_numpy()
+    poses = library.Pose.from_rpy(table[["x", "y", "z"]].to_numpy(), angles, degrees=True)
+    own = np.abs(design.at(poses).joints - joints).max(axis=1) < 1e-9
+    np.testing.assert_array_equal(table["on_branches"], own)
+    assert "on_branches" in printed.out
+    far = ("--position", 0, 0, -2, "--angles", 0, 0, 100)
+    near = gsp("forward", design.name, "--joints", values, *far, "--fallback", "modes")
+    assert "nearest mode" in near.out
+
+
+def test_values_of_drives_that_are_no_numbers_are_stated(gsp):
+    names = library.catalogue.design("lane-rotary").joint_names
+    pd.DataFrame([[-0.1, 0.1, np.nan, 0, 0, 0]], columns=names).to_csv("joints.csv", index=False)
+    printed = gsp("forward", "lane-rotary", "--joints", "joints.csv")
+    assert "theta3: expected a finite number, received nan" in printed.err
+    assert "theta1" not in printed.err
+
+
 def test_joint_values_without_a_mode_are_said_to_have_none(gsp):
     printed = gsp("forward", OCTAHEDRON, "--joints", "2.4 1.1 0.8 1.2 1.8 1.7", "--all")
     assert "0 real of 16 complex assembly modes" in printed.out

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.errors import InvalidDesign
 from tests import campaign, driven
 
 CASES = [
@@ -57,9 +56,3 @@ def test_joint_values_out_of_reach_do_not_converge():
     joints = design.at(design.home).joints
     joints = joints + np.array([9.0, 0, 0, 0, 0, 0])
     assert not gsp.forward(design, joints, design.home).converged
-
-
-def test_modes_and_drives_do_not_go_together():
-    design = driven.hexaglide()
-    with pytest.raises(InvalidDesign, match="driven at the base"):
-        gsp.forward(design, np.zeros(6), design.home, fallback="modes")

@@ -7,6 +7,7 @@ import pytest
 
 import gsp
 from gsp.errors import InvalidInput
+from tests import driven
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
@@ -80,3 +81,20 @@ def test_one_mode_and_a_singular_one_are_drawn():
     one = replace(modes, poses=modes.poses[:1], side=np.zeros(1), condition=np.array([np.inf]))
     figure = gsp.plots.assembly_modes(LIFT, one)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["singular"]
+
+
+def test_rods_of_driven_legs_are_drawn_from_their_tips_and_other_branches_are_labelled():
+    design = gsp.catalogue.design("lane-rotary")
+    joints = design.at(design.home).joints + 0.1
+    modes = gsp.assembly_modes(design, joints)
+    assert not modes.on_branches.all()
+    figure = gsp.plots.assembly_modes(design, modes)
+    tips = driven.tips(design, design.at(modes.poses[int(modes.on_branches.argmax())]))
+    for i, ax in enumerate(figure.axes):
+        assert ("other branch" in ax.get_title()) == (not modes.on_branches[i])
+        rods = [np.array(line.get_data_3d()).T for line in ax.lines[:6]]
+        cranks = [np.array(line.get_data_3d()).T for line in ax.lines[6:12]]
+        for leg, (rod, arm) in enumerate(zip(rods, cranks, strict=True)):
+            np.testing.assert_allclose(rod[0], tips[leg], atol=1e-9)
+            np.testing.assert_allclose(arm, [design.base_points[leg], tips[leg]], atol=1e-9)
+            assert np.linalg.norm(rod[1] - rod[0]) == pytest.approx(design.drives[leg].rod)

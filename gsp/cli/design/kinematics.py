@@ -190,9 +190,11 @@ def forward_table(
 
 def _warn_of_undefined(design: Design, joints: Array, guess: Pose, found: ForwardSolution) -> None:
     """State why poses are undefined: joint values that a joint cannot have, or the guess."""
-    values, turns = np.atleast_2d(joints), design.angular
+    values = np.atleast_2d(joints)
+    turns, drives = design.angular, np.array([row.constraint.driven for row in design.rows])
     lost = np.atleast_1d(found.status) == "undefined"
     inside = (values > 0.0) & (values < np.where(turns, np.pi, np.inf)) | (~turns & (values == 0.0))
+    inside = np.where(drives, np.isfinite(values), inside)
     of_guess = int((lost & inside.all(axis=-1)).sum())
     if of_guess:
         reasons = "; ".join(f"{each.joint}: {each.reason}" for each in design.at(guess).undefined)
@@ -200,6 +202,7 @@ def _warn_of_undefined(design: Design, joints: Array, guess: Pose, found: Forwar
     wrong = np.argwhere(~inside & lost[:, None])
     for row, joint in wrong[:MOST_REASONS]:
         wanted = "an angle between 0 and π" if turns[joint] else "a finite distance ≥ 0"
+        wanted = "a finite number" if drives[joint] else wanted
         where = f"row {row + 1}: " if len(values) > 1 else ""
         given = f"{values[row, joint]:.6g}"
         warn(f"undefined: {where}{expected(design.joint_names[joint], wanted, given)}")

@@ -52,7 +52,7 @@ def all_modes(
         got = f"{len(design.joint_names)} of {design.name}"
         raise InvalidInput(expected("--all", "a design with six actuators", got))
     modes = assembly_modes(design, joints, certify=certify)
-    table = modes_table(modes, order)
+    table = modes_table(design, modes, order)
     unit = design.unit or "units"
     say(f"{_title(design, modes)}; position in {unit}, angles {order} in degrees", "bold")
     if len(table):
@@ -113,13 +113,19 @@ def _print(table: pd.DataFrame, *, certify: bool) -> None:
         det_j=[SIDES.get(float(side), "undefined") for side in table["side"]],
         condition=[number(c, 4) for c in table["condition"]],
     )
-    words = ("mode", "det_j", "condition", *(("certified",) if certify else ()))
+    labels = [name for name in ("on_branches",) if name in table]
+    words = ("mode", "det_j", "condition", *(("certified",) if certify else ()), *labels)
     print_rows(shown, (*words, *POSE_COLUMNS), text=words)
 
 
-def modes_table(modes: AssemblyModes, order: str) -> pd.DataFrame:
-    """Return one row per mode: sign of det J, condition, multiplicity, certificate, pose."""
+def modes_table(design: Design, modes: AssemblyModes, order: str) -> pd.DataFrame:
+    """Return one row per mode: sign of det J, condition, multiplicity, certificate, pose.
+
+    With drives at the base also whether it is on the stated branches.
+    """
     import pandas as pd
+
+    branches = {"on_branches": modes.on_branches} if design.driven else {}
 
     return pd.DataFrame(
         {
@@ -129,6 +135,7 @@ def modes_table(modes: AssemblyModes, order: str) -> pd.DataFrame:
             "multiplicity": modes.multiplicity,
             "residual": modes.residual,
             "certified": modes.certified,
+            **branches,
             **pose_columns(modes.poses, order),
         }
     )

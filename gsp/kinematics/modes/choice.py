@@ -22,7 +22,7 @@ class Mode(NamedTuple):
 
 
 def nearest_mode(design: Design, joints: Array, guess: Pose, tolerance: float) -> Mode | None:
-    """Return the regular mode nearest to a pose; None if there is no regular mode.
+    """Return the regular mode nearest to a pose, on the stated branches; None if there is none.
 
     Parameters
     ----------
@@ -37,7 +37,9 @@ def nearest_mode(design: Design, joints: Array, guess: Pose, tolerance: float) -
     # In the centred frames, as residuals are rounded in those of a design that is far from them.
     system = centred(design)
     modes = assembly_modes(system.design, system.joints_from(joints))
-    regular = np.flatnonzero((modes.side != 0.0) & (modes.residual <= tolerance))
+    regular = np.flatnonzero(
+        (modes.side != 0.0) & (modes.residual <= tolerance) & modes.on_branches
+    )
     if regular.size == 0:
         return None
     chosen = regular[_distances(modes.poses[regular], system.pose_from(guess)).argmin()]

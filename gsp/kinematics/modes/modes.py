@@ -14,14 +14,16 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.matrices import condition, determinant_sign, singular_values
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
+from gsp.kinematics.driven import held, usable
 from gsp.kinematics.modes.census import confirmed_counts
 from gsp.kinematics.modes.certificates import certified
+from gsp.kinematics.modes.drives import of_drives
 from gsp.kinematics.modes.ends import Ends, ends_of, real_poses
 from gsp.kinematics.modes.equations import order_of, parameters_from, rotations
 from gsp.kinematics.modes.reach import contradict
 from gsp.kinematics.modes.starts import start_of
 from gsp.kinematics.newton.centred import Centred, centred
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
 
 # Distances in sizes of the design beyond which paths are not followed.
 LARGEST_DISTANCE_SIZES = 1e6
@@ -47,16 +49,18 @@ class AssemblyModes(ReadOnly):
 
     Attributes
     ----------
+    joints : (6,) array [unit of the design, rad]
+        The joint values.
     poses : Pose of batch shape (n,)
-        The real poses with the joint values, each once.
+        The real poses with the joint values, each once. With drives at the base, on all branches.
     residual : (n,) array [1, rad]
-        Largest joint error, distances as a share of `design.rms_radius`. NaN where a leg is
-        undefined.
+        Largest joint error, distances as a share of `design.rms_radius`; of a drive the error of
+        the length of its rod. NaN where a leg is undefined.
     side : (n,) array [1]
-        Sign of det J; 0 for a singular solution.
+        Sign of det J; 0 for a singular solution, and where a drive at the base is singular.
     condition : (n,) array [1]
         Condition number of the Jacobian with the length `design.rms_radius`, twists at the centre
-        of the platform anchors; inf for a singular solution.
+        of the platform anchors; inf where `side` is 0.
     multiplicity : (n,) int array
         Number of paths that ended there: 1 for a regular solution.
     certified : (n,) bool array
@@ -67,7 +71,12 @@ class AssemblyModes(ReadOnly):
         `design.rms_radius`, of the place of the centre of the platform anchors, seen from that of
         the base anchors. NaN without a proof. The boxes, and whether there is a proof, do not
         depend on the origins of the frames; the rounding of `poses` in frames that are far from the
-        anchors is not a part of the boxes.
+        anchors is not a part of the boxes. With drives at the base, the tips of the rods are the
+        base anchors, at their rounded places, and the size is that of the design with these.
+    on_branches : (n,) bool array
+        Whether all drives at the base are on the branches that the design states; True without
+        drives. On other branches the drives have the given values, but `design.at(pose).joints` are
+        those of the stated branches: a motion from one to the other passes a singular drive.
     n_complex : int
         Number of regular solutions in complex numbers, the real ones included.
     n_singular, n_infinite, n_lost : int
@@ -88,6 +97,7 @@ class AssemblyModes(ReadOnly):
         whatever the pose, by a triangle inequality between the anchors; there are no poses.
     """
 
+    joints: Array
     poses: Pose
     residual: Array
     side: Array
@@ -95,6 +105,7 @@ class AssemblyModes(ReadOnly):
     multiplicity: NDArray[np.int64]
     certified: Mask
     radius: Array
+    on_branches: Mask
     n_complex: int
     n_singular: int
     n_infinite: int
@@ -113,6 +124,10 @@ def assembly_modes(design: Design, joints: ArrayLike, *, certify: bool = False) 
     the paths are all of them. Which of them are real is decided by Newton's method in real numbers.
 
     What is counted are complex poses that satisfy squared distances and cosines of angles.
+
+    With drives at the base the locked drives hold the tips of the rods, and the modes are those of
+    the D1 legs from these tips, with the lengths of the rods. They include poses on other branches
+    than those of the design, which `on_branches` labels.
 
     Parameters
     ----------
@@ -146,17 +161,26 @@ def assembly_modes(design: Design, joints: ArrayLike, *, certify: bool = False) 
     >>> modes.status, modes.n_complex, len(modes.residual)
     ('found', 28, 8)
     """
-    check_undriven("design", design)
+    check_type("design", design, Design)
     check_type("certify", certify, bool, "True or False")
     target = _check(design, joints)
+    if not design.driven:
+        return _modes(design, target, certify=certify)
+    if not usable(target):
+        return _nothing("undefined", target)
+    return of_drives(design, target, _modes(*held(design, target), certify=certify))
+
+
+def _modes(design: Design, target: Array, *, certify: bool) -> AssemblyModes:
+    """Return the modes of a design without drives at the base."""
     system = centred(design)
     values = system.joints_from(target)
     if not system.possible(values):
-        return _nothing("undefined")
+        return _nothing("undefined", target)
     if contradict(design, target):
-        return _nothing("impossible")
+        return _nothing("impossible", target)
     if values.max() > LARGEST_DISTANCE_SIZES:
-        return _nothing("incomplete")
+        return _nothing("incomplete", target)
     names, rows = order_of([leg.name for leg in design.legs])
     known = _expected(design, names)
     start = start_of(names, known)
@@ -183,9 +207,10 @@ def _expected(design: Design, names: tuple[str, ...]) -> int | None:
     return confirmed_counts().get(mechanism.name) if known else None
 
 
-def _nothing(status: str) -> AssemblyModes:
+def _nothing(status: str, target: Array) -> AssemblyModes:
     none = np.empty(0)
     return AssemblyModes(
+        joints=target,
         poses=Pose(np.empty((0, 3)), np.empty((0, 3, 3))),
         residual=none,
         side=none,
@@ -193,6 +218,7 @@ def _nothing(status: str) -> AssemblyModes:
         multiplicity=np.empty(0, dtype=np.int64),
         certified=np.empty(0, dtype=bool),
         radius=none,
+        on_branches=np.empty(0, dtype=bool),
         n_complex=0,
         n_singular=0,
         n_infinite=0,
@@ -227,6 +253,7 @@ def _result(
     rough = bool((residual[~singular] > ROUGH_RESIDUAL).any())
     odd = (total - int(ends.multiplicity[places].sum())) % 2 == 1  # others are conjugates
     return AssemblyModes(
+        joints=target,
         poses=poses,
         residual=residual,
         side=np.where(singular, 0.0, side),
@@ -234,6 +261,7 @@ def _result(
         multiplicity=ends.multiplicity[places],
         certified=np.isfinite(radius),
         radius=radius,
+        on_branches=np.ones(len(solutions), dtype=bool),
         n_complex=regular,
         n_singular=total - regular,
         n_infinite=ends.at_infinity,

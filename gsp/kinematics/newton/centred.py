@@ -13,6 +13,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.pose.centring import centred_pose, original_pose
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.model.design import Design
+from gsp.model.drives import scaled
 from gsp.model.legs import LEGS
 
 
@@ -30,7 +31,7 @@ class Centred:
     frame : (7,) array
         Size [unit of the original]; centres of base and platform anchors in their own axes.
     kinds : (n_legs,) int array
-        Places in `gsp.model.legs.LEGS`.
+        Places in `gsp.model.legs.LEGS`; −1 for legs that are driven at the base.
     geometry, paths : (n_legs * 13,) and (n_legs * 18,) arrays
         a, b, s, t, |a| + |b|; and a, b, s, t, |a|, |b|, four tolerances of zero.
     units : (n,) array
@@ -54,8 +55,9 @@ class Centred:
         lines = np.nan_to_num(np.hstack((design.base_directions, design.platform_directions)))
         sizes = np.stack((norm(a), norm(b)), axis=1)
         reach = sizes.sum(axis=1, keepdims=True)
+        legs = [leg if leg.drive is None else scaled(leg.drive, 1.0 / size) for leg in design.legs]
         small = Design(
-            design.legs,
+            legs,
             a,
             b,
             design.base_directions,
@@ -64,7 +66,10 @@ class Centred:
         return cls(
             design=small,
             frame=np.concatenate(([size], *centres)),
-            kinds=np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64),
+            kinds=np.array(
+                [LEGS.index(leg) if leg.drive is None else -1 for leg in design.legs],
+                dtype=np.int64,
+            ),
             geometry=np.hstack((a, b, lines, reach)).ravel(),
             paths=np.hstack((a, b, lines, sizes, np.zeros((len(a), 4)))).ravel(),
             units=np.where(design.angular, 1.0, size),
