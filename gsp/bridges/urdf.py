@@ -1,4 +1,4 @@
-"""A design as URDF: its tree of links, and the loops, which URDF cannot contain."""
+"""A design as URDF: its tree of links, and the loops, for which URDF has no element."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from gsp.bridges.drives import (
     limit_at_zero,
 )
 from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
+from gsp.bridges.loops import Loop, add_ball_constraints, loop_of
 from gsp.bridges.markup import (
     Node,
     base_slides,
@@ -40,25 +41,6 @@ from gsp.model.design import Design
 # What is written where there is no limit, as URDF demands numbers: m or rad; N or N m; m/s or
 # rad/s.
 NO_LIMIT = JointLimit(-NO_STROKE, NO_STROKE, 1e6, 1e3)
-
-
-class Loop(NamedTuple):
-    """One loop to close: link_1 is fixed to link_2 where `placement` lies on link_2.
-
-    Attributes
-    ----------
-    name : str
-        Of the leg, "leg1" ….
-    link_1, link_2 : str
-        The last link of the leg, and "platform".
-    placement : Pose of batch shape ()
-        Where the frame of link_1 lies in that of link_2 when the loop is closed [m].
-    """
-
-    name: str
-    link_1: str
-    link_2: str
-    placement: Pose
 
 
 @read_only_tuple
@@ -87,17 +69,8 @@ class Urdf(NamedTuple):
 
     def beside(self) -> str:
         """Return loops, joint variables and pose as JSON; rotations are (x, y, z, w)."""
-        loops = [
-            {
-                "name": loop.name,
-                "link_1": loop.link_1,
-                "link_2": loop.link_2,
-                **numbers_of(loop.placement),
-            }
-            for loop in self.loops
-        ]
         content = {
-            "loops": loops,
+            "loops": [loop.numbers for loop in self.loops],
             "joints_at_zero": dict(self.joints),
             "slides_at_zero": dict(self.slides),
             "platform_at_zero": numbers_of(self.platform),
@@ -121,6 +94,7 @@ def to_urdf(
     the configuration in which programs start. A spherical joint is three turns about z, y and x
     ("leg1_base_z" …), a cylindrical one a slide and a turn, with light links between them. Actuated
     joints have their names of `Posture.joint_names`; `Urdf.joints` has their values at the pose.
+    Tags `drake:ball_constraint` close the loops in Drake, and other programs pass over them.
 
     Parameters
     ----------
@@ -172,7 +146,8 @@ def to_urdf(
     if not floating:
         place = metric(chains[0].head.inverse(), metres)
         _add_joint(root, "leg1_to_platform", "fixed", ends.pop(chains[0]), "platform", place)
-    loops = [Loop(c.name, end, "platform", metric(c.head, metres)) for c, end in ends.items()]
+    loops = [loop_of(chain, end, metres, design.rms_radius) for chain, end in ends.items()]
+    add_ball_constraints(root, loops)
     values = joint_values(design, pose, metres)
     slides = base_slides(chains, metres)
     return Urdf(written(root), tuple(loops), values, metric(pose, metres), slides)
