@@ -29,6 +29,8 @@ WORKS = MappingProxyType({
     "characteristic_length.characteristic_length": "here", "comparison.in_unit": ROWS,
     "forward_solution.forward": "tests/kinematics/test_driven_forward.py",
     "modes.modes.assembly_modes": "tests/kinematics/test_driven_modes.py",
+    "travels.travel": "tests/kinematics/test_driven_limits.py",
+    "nearest_pose.nearest": "tests/kinematics/test_driven_limits.py",
     "plots.modes.assembly_modes": "tests/plots/test_modes_plot.py",
     "mechanisms.mechanism": "tests/plots/test_mechanism_plot.py", "motions.animate": "here",
     # Facts of the design, and indices, which are functions of the rows.

@@ -45,7 +45,7 @@ def components(array: NDArray[Any]) -> list[NDArray[Any]]:
 
 def root(x: Scalar) -> Scalar:
     """Square root; the principal one of a complex number."""
-    if isinstance(x, np.ndarray):
+    if isinstance(x, np.ndarray | np.float64):
         return np.sqrt(x)
     if isinstance(x, float | int):
         return math.sqrt(x)

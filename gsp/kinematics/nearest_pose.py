@@ -15,17 +15,22 @@ from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, norm
+from gsp.kinematics.reach import crank_bounds, reaches
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import DIFFERENCE_STEP
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
 
 # By how much the nearest pose may violate a limit: distances as a share of the size, others as
 # they are.
 LIMIT_TOLERANCE = 1e-9
 # The same for the searches, whose lengths are rounded.
 SEARCH_TOLERANCE = 1e-6
+# How far drives at the base must reach beyond a pose that is found [sizes], and how far the angle
+# of a crank that ends at π is from it [rad]: above the tolerance of limits.
+LEAST_REACH = 1e-8
+TURN = 2.0 * np.pi
 # How far a search on exact lengths may move an end, and the steps of Newton's method for it.
 LONGEST_CORRECTION, CORRECTION_STEPS = 1e-3, 3
 
@@ -70,6 +75,10 @@ def nearest(
     the anchors. So the result is the same in every unit and for all origins of the frames. Other
     axes of the frames, or another order of the legs, may lead to another local minimum.
 
+    Drives at the base must reach the pose on their branches, beyond it by at least 1e-8 of the
+    size: that a drive is singular is a limit as well. Whether a motion from the pose to the nearest
+    one passes a singular drive is not examined.
+
     Parameters
     ----------
     design : Design
@@ -90,7 +99,7 @@ def nearest(
     EmptyWorkspace
         If no search finds a feasible pose.
     MissingParameter
-        If nothing limits the design.
+        If nothing limits the design: drives at the base alone do not count.
     InvalidInput
         On other types or shapes.
 
@@ -104,18 +113,20 @@ def nearest(
     >>> bool((d.at(found.pose).joints <= 150 + 1e-6).all()), found.distance < 0.1
     (True, True)
     """
-    check_undriven("design", design)
+    check_type("design", design, Design)
     check_type("pose", pose, Pose)
     if pose.shape or not np.isfinite(pose.position).all():
         raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
     number, generator = check_integer("starts", starts), check_rng("rng", rng)
     check_memory("starts", number, POSE_BYTES, "poses")
     given = Limits() if limits is None else limits
-    bounded_quantities(design, given, crossed=True)  # checks that the limits fit the design
+    bounded_quantities(
+        design, given, crossed=True, driven=True
+    )  # checks that the limits fit the design
     small = centred_limits(design, given)
     target = small.pose_from(pose)
     exact = _Search(small, target)
-    if (exact.slacks(np.zeros(6)) >= 0.0).all():
+    if (exact.slacks(np.zeros(6), 0.0) >= 0.0).all():
         return Nearest(pose=pose, distance=0.0, starts=1)
     rough = _Search(small.rounded(), Pose(rounded(target.position), target.rotation))
     begin = [np.zeros(6), *generator.uniform(-0.5, 0.5, (number - 1, 6))]
@@ -142,10 +153,22 @@ class _Search:
     """
 
     def __init__(self, small: CentredLimits, target: Pose) -> None:
-        self.bounds = bounded_quantities(small.design, small.limits, crossed=True)
+        self.bounds = bounded_quantities(small.design, small.limits, crossed=True, driven=True)
         self.design, self.target = small.design, target
         self.centre = small.design.platform_points.mean(axis=0)
-        self.finite = np.isfinite(self.bounds.low), np.isfinite(self.bounds.high)
+        drives = [row.constraint.driven for row in self.design.rows]
+        self.drives = np.flatnonzero(drives)
+        self.cranks = np.flatnonzero(self.design.angular & drives)
+        limits = np.stack((self.bounds.low, self.bounds.high), axis=-1)
+        # Beyond π the angle of a crank is near −π.
+        angles = crank_bounds(limits[self.cranks])
+        ends = np.isfinite(angles) * (np.pi - LEAST_REACH)
+        limits[self.cranks] = np.where(ends > 0.0, np.clip(angles, -ends, ends), angles)
+        self.low, self.high = limits.T
+        self.finite = np.isfinite(self.low), np.isfinite(self.high)
+        # Angles of cranks are counted from the middle of their strokes.
+        closed = np.isfinite(angles).all(axis=-1, keepdims=True)
+        self.middles = np.where(closed, angles, 0.0).mean(axis=-1)
 
     def placed(self, x: Array) -> Pose:
         turn = exp3(x[3:]) @ self.target.rotation
@@ -161,21 +184,34 @@ class _Search:
         step = np.concatenate((middles[0] - middles[1], turn))
         return step if self.allowed(step) else None
 
-    def slacks(self, x: Array) -> Array:
-        """Return how far the quantities are inside of their bounds; −1e9 if undefined."""
+    def slacks(self, x: Array, least_reach: float = LEAST_REACH) -> Array:
+        """Return how far the quantities are inside of their bounds; −1e9 if undefined.
+
+        The last ones state how far drives reach beyond the pose. Where one does not, its joint
+        value violates nothing.
+        """
         at = self.placed(x)
         values = self.bounds.quantities.values(at.position, at.rotation)
-        low, high = values - self.bounds.low, self.bounds.high - values
-        slacks = np.concatenate((low[self.finite[0]], high[self.finite[1]]))
-        return np.nan_to_num(slacks, nan=-1e9)
+        values[self.cranks] -= TURN * np.round((values[self.cranks] - self.middles) / TURN)
+        low, high = values - self.low, self.high - values
+        lost = self.drives[np.isnan(values[self.drives])]
+        low[lost] = high[lost] = 0.0
+        reach = reaches(self.design, at.position, at.rotation)[0] - least_reach
+        slacks = np.concatenate((low[self.finite[0]], high[self.finite[1]], reach))
+        return np.asarray(np.nan_to_num(slacks, nan=-1e9))
 
     def slopes(self, x: Array) -> Array:
         """Return the derivatives of the slacks by x, shape (number of slacks, 6)."""
         at = self.placed(x)
         _, rows = self.bounds.evaluate(at.position, at.rotation)
+        n = len(rows)
+        own = rows[self.drives]
+        rows[self.drives] = np.where(np.isfinite(own), own, 0.0)
+        rows = np.concatenate((rows, reaches(self.design, at.position, at.rotation)[1]))
         turns = about_point(rows, at.rotation @ self.centre)[:, 3:] @ exp3_rates(x[3:])
         rates = np.nan_to_num(np.hstack((rows[:, :3], turns)))
-        return np.concatenate((rates[self.finite[0]], -rates[self.finite[1]]))
+        inner, reach = rates[:n], rates[n:]
+        return np.concatenate((inner[self.finite[0]], -inner[self.finite[1]], reach))
 
     def allowed(self, x: Array, slack: float = LIMIT_TOLERANCE) -> bool:
         inside = np.isfinite(x).all() and norm(x[3:]) <= np.pi

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,10 +16,11 @@ from gsp.geometry.vectors import Array
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
 from gsp.kinematics.newton.control import PROVEN_SHARE
+from gsp.kinematics.newton.stages import bend
+from gsp.kinematics.reach import crank_bounds
 from gsp.kinematics.travel_paths import TravelPath
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
 from gsp.model.design.checks import check_strokes, open_strokes
-from gsp.variation.legs import KINDS, Kind
 
 # Shortest step, in sizes of the design and rad. Where the limit is crossed, not only touched,
 # the result is below the exact one by at most this.
@@ -38,7 +40,8 @@ class Travel(ReadOnly):
     distance : float [1]
         Factor of the direction; to its end no limit is violated.
     limit : str
-        What ends it: a joint and its bound ("d3 = 140"), "singular" (det J = 0 or an undefined
+        What ends it: a joint and its bound ("d3 = 140"), a joint and why its drive at the base is
+        singular ("d3: the rod is perpendicular to the rail"), "singular" (det J = 0 or an undefined
         leg), or "" if nothing does up to `farthest`.
     pose : Pose of batch shape ()
         At the end.
@@ -72,6 +75,12 @@ def travel(
     ‖J⁻¹‖ (dimensionless, Frobenius) exceeds 7e6, at which a posture counts as singular in
     double precision.
 
+    Of legs that are driven at the base, that the drive is not singular is proven on each step, so
+    that they stay on their branches, and J is that of their rods. Beyond a singular drive lies what
+    it does not reach; it is missed by about 1e-9 of the size. The angle of a crank counts
+    from −π to π, as in `gsp.feasible`: at π it passes to −π, which violates any bound that not all
+    angles satisfy.
+
     Parameters
     ----------
     design : Design
@@ -81,8 +90,8 @@ def travel(
     direction : (6,) array_like [unit of the design, rad]
         (v, ω), in base axes. Its largest component is between 1e-100 and 1e100.
     strokes : (6, 2) array_like or None [unit of the design, rad]
-        Least and greatest joint values, those of distances ≥ 0, NaN for none; default those of
-        the design.
+        Least and greatest joint values, those of distances ≥ 0 but for drives at the base, NaN for
+        none; default those of the design.
     farthest : float or None [1]
         Greatest factor; default the one that moves the centre of the anchors by 10 sizes of the
         design, at its speed at the start, or the platform by 10 rad. The default is less for
@@ -124,7 +133,10 @@ def travel(
 
 
 def _name(design: Design, number: int, bounds: Array) -> str:
-    """Name a limit: −1 none, −2 singular, else 2 × joint + side."""
+    """Name a limit by its number, see `_March`."""
+    if number < -2:
+        joint = -3 - number
+        return f"{design.joint_names[joint]}: {design.rows[joint].constraint.singular}"
     if number < 0:
         return "" if number == -1 else "singular"
     joint, side = divmod(number, 2)
@@ -134,7 +146,7 @@ def _name(design: Design, number: int, bounds: Array) -> str:
 def _check(
     design: Design, pose: Pose, direction: ArrayLike, strokes: ArrayLike | None
 ) -> tuple[Pose, Array, Array]:
-    check_undriven("design", design)
+    check_type("design", design, Design)
     check_type("pose", pose, Pose)
     if pose.shape or not np.isfinite(pose.position).all():
         raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
@@ -150,23 +162,29 @@ def _check(
 
 
 class _March:
-    """Steps along one path, each proven to violate no limit."""
+    """Steps along one path, each proven to violate no limit.
+
+    Limits have numbers: 2 × joint + side; −1 none; −2 a singular posture or an undefined leg;
+    −3 − joint a singular drive.
+    """
 
     def __init__(self, design: Centred, path: TravelPath, bounds: Array) -> None:
         self.design, self.path = design, path
-        kinds: list[tuple[Kind, int, int]] = []
-        for leg, kind in enumerate(design.design.legs):
-            kinds += [(KINDS[kind.name], leg, k) for k in range(len(kind.constraints))]
-        self.kinds, self.angular = kinds, design.design.angular
+        rows = design.design.rows
+        self.drives = np.array([row.constraint.driven for row in rows])
+        self.cosines = design.design.angular & ~self.drives
+        bounds = np.where(
+            (design.design.angular & self.drives)[:, None], crank_bounds(bounds), bounds
+        )
         low, high = bounds[:, 0], bounds[:, 1]
         self.names = np.arange(12).reshape(6, 2)
         # Angles are bounded by their cosines. A distance that may be 0 may change its sign.
-        free = ~self.angular & (low <= 0.0)
+        free = ~self.cosines & ~self.drives & (low <= 0.0)
         with np.errstate(invalid="ignore"):
             cosines = np.cos(np.clip(bounds[:, ::-1], 0.0, np.pi))
-        self.low = np.where(self.angular, cosines[:, 0], np.where(free, -high, low))
-        self.high = np.where(self.angular, cosines[:, 1], high)
-        self.names[self.angular] = self.names[self.angular][:, ::-1]
+        self.low = np.where(self.cosines, cosines[:, 0], np.where(free, -high, low))
+        self.high = np.where(self.cosines, cosines[:, 1], high)
+        self.names[self.cosines] = self.names[self.cosines][:, ::-1]
         self.names[free, 0] = self.names[free, 1]
 
     def go(self, most: float) -> tuple[float, int]:
@@ -174,10 +192,10 @@ class _March:
         done, step = 0.0, 0.125
         with np.errstate(all="ignore"):
             here = self._point(0.0, None)
-            if not self._regular(here):
-                return 0.0, -2
-            bad = self._beyond(*self._values(here, np.zeros(6)), np.zeros(6))
-            if bad >= 0:
+            bad = self._fault(here)
+            if bad == -1:
+                bad = self._beyond(*self._values(here, np.zeros(6)), np.zeros(6))
+            if bad != -1:
                 return 0.0, bad
             grows = False
             while done < most:
@@ -196,41 +214,51 @@ class _March:
     def _point(self, distance: float, signs: Array | None) -> reference.Points:
         return reference.points_at(self.design, self.path.pose(distance), np.zeros((1, 6)), signs)
 
-    def _regular(self, point: reference.Points) -> bool:
+    def _fault(self, point: reference.Points) -> int:
+        """Return −1 for a regular posture, else the number of what it is not."""
         square = float((point.inverse**2).sum())
-        return bool(point.undefined[0] == 0.0 and np.finfo(float).eps * square <= 0.01)
+        if point.undefined[0] == 0.0:
+            return -1 if np.finfo(float).eps * square <= 0.01 else -2
+        posture = self.design.design.at(point.pose)
+        # A drive becomes undefined where it is singular.
+        lost = self.drives & (posture.drive_is_singular[0] | np.isnan(posture.joints[0]))
+        return -3 - int(lost.argmax()) if lost.any() else -2
 
     def _checked(
         self, here: reference.Points, there: reference.Points, done: float, step: float
     ) -> int:
         """Return −1 if a step violates nothing, else the number of a limit."""
-        if not self._regular(there):
-            return -2
+        bad = self._fault(there)
+        if bad != -1:
+            return bad
         move, curved = step * self.path.velocity(done), step**2 * self.path.curved
-        bad = self._beyond(*self._values(here, move), self._seconds(here, move, curved))
+        rows, values = reference.jets_of(
+            self.design, reference.patch_of(here.pose, move[None], curved)
+        )
+        seconds = self._numbers([jet.second + 2.0 * jet.slack for jet in values])
+        lost = self.drives & ~np.isfinite(seconds)
+        if lost.any():
+            return -3 - int(lost.argmax())
+        bad = self._beyond(*self._values(here, move), seconds)
         if bad >= 0:
             return bad
-        bends = reference.row_bends(self.design, here.pose, move[None], curved)
+        bends = self._numbers([bend(row) for row in rows])[None]
         change = there.rows - here.rows
         ends = (reference.change_bound(point, change, bends)[0] for point in (here, there))
         return -1 if max(ends) < PROVEN_SHARE else -2
 
     def _values(self, point: reference.Points, move: Array) -> tuple[Array, Array]:
-        """Return signed distances and cosines, and their changes to first order, (6,)."""
-        value, change = point.error[0], point.rows[0] @ move
-        value = np.where(self.angular, np.cos(value), value)
-        sine = np.sin(point.error[0])
-        return value, np.where(self.angular, -sine * change, change)
+        """Return signed distances, cosines and values of drives, and their changes, (6,).
 
-    def _seconds(self, point: reference.Points, move: Array, curved: float) -> Array:
-        """Return bounds of the second derivatives over a step, (6,)."""
-        patch = reference.patch_of(point.pose, move[None], curved)
-        geometry = self.design.paths.reshape(-1, 18)
-        found = []
-        for kind, leg, k in self.kinds:
-            jet = kind.values[k](kind.segment(patch, list(geometry[leg])))
-            found.append(float(np.broadcast_to(jet.second + 2.0 * jet.slack, (1,))[0]))
-        return np.array(found)
+        The changes are those to first order.
+        """
+        value, change = point.error[0], point.rows[0] @ move / point.scale[0]
+        value = np.where(self.cosines, np.cos(value), value)
+        sine = np.sin(point.error[0])
+        return value, np.where(self.cosines, -sine * change, change)
+
+    def _numbers(self, found: list[Any]) -> Array:
+        return np.array([float(np.broadcast_to(x, (1,))[0]) for x in found])
 
     def _beyond(self, value: Array, change: Array, second: Array) -> int:
         """Return a bound that x + τ x' ± τ² S/2 may pass for 0 ≤ τ ≤ 1; −1 if there is none."""

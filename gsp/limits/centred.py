@@ -17,6 +17,7 @@ from gsp.geometry.vectors import Array
 from gsp.indices import Index
 from gsp.limits.limits import Limits
 from gsp.model.design import Design
+from gsp.model.drives import Crank, Drive
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,6 +58,7 @@ class CentredLimits:
         """
         d, e = self.design, self.design.ellipsoid
         design = d.replace(
+            legs=[leg if leg.drive is None else _rounded_drive(leg.drive) for leg in d.legs],
             base_points=rounded(d.base_points),
             platform_points=rounded(d.platform_points),
             strokes=None if d.strokes is None else rounded(d.strokes),
@@ -83,6 +85,13 @@ def rounded(array: Array) -> Array:
 
 def _rounded_number(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.9g}")
+
+
+def _rounded_drive(drive: Drive) -> Drive:
+    changes: dict[str, Any] = {"rod": _rounded_number(drive.rod)}
+    if isinstance(drive, Crank):
+        changes["arm"] = rounded(np.array(drive.arm))
+    return replace(drive, **changes)
 
 
 def _rounded_ellipsoid(e: Ellipsoid) -> Ellipsoid:

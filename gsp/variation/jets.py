@@ -14,7 +14,7 @@ may be floats or the symbols of `gsp.kernels.trace`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,8 +36,9 @@ class Jet:
     ----------
     value : list of scalars
         At the centre.
-    slopes : list of six vectors
-        Derivatives at the centre along the coordinates, scaled by the half-widths.
+    slopes : list of six vectors, or an empty one
+        Derivatives at the centre along the coordinates, scaled by the half-widths. None on a patch
+        of one direction, where `slack` bounds tolerances and rounding alone.
     slack, first, second : scalars
         Bounds of the part of X′(0) that is not in `slopes`, of |X′| and of |X″| on the paths.
     most : scalar
@@ -82,13 +83,18 @@ def constant(value: Vector, most: Any) -> Jet:
     return Jet(value, [[0.0] * len(value)] * 6, 0.0, 0.0, 0.0, most)
 
 
+def _pairs(x: Jet, y: Jet) -> Iterable[tuple[Vector, Vector]]:
+    """Return the slopes of two jets together; none if one of them has none."""
+    return zip(x.slopes, y.slopes, strict=False)
+
+
 def total(x: Jet, y: Jet, sign: float = 1.0) -> Jet:
     """Sum of two jets, or their difference with sign −1."""
     join = plus if sign > 0.0 else minus
     value, first = join(x.value, y.value), x.first + y.first
     return Jet(
         value,
-        [join(a, b) for a, b in zip(x.slopes, y.slopes, strict=True)],
+        [join(a, b) for a, b in _pairs(x, y)],
         x.slack + y.slack + JET_ROUNDING * (x.most + y.most + first),
         first,
         x.second + y.second,
@@ -116,10 +122,7 @@ def _product(
     most = x.most * y.most
     return Jet(
         value,
-        [
-            plus(join(dx, y.value), join(x.value, dy))
-            for dx, dy in zip(x.slopes, y.slopes, strict=True)
-        ],
+        [plus(join(dx, y.value), join(x.value, dy)) for dx, dy in _pairs(x, y)],
         x.most * y.slack + y.most * x.slack + JET_ROUNDING * (most + first),
         first,
         x.most * y.second + 2.0 * (x.first * y.first) + y.most * x.second,
@@ -132,7 +135,7 @@ def joined(x: Jet, y: Jet) -> Jet:
     """Return two vectors as one; its bounds are hypotenuses of theirs."""
     return Jet(
         [*x.value, *y.value],
-        [[*a, *b] for a, b in zip(x.slopes, y.slopes, strict=True)],
+        [[*a, *b] for a, b in _pairs(x, y)],
         _hypotenuse(x.slack, y.slack),
         _hypotenuse(x.first, y.first),
         _hypotenuse(x.second, y.second),
@@ -205,4 +208,35 @@ def unit(x: Jet) -> Jet:
     slack = per * x.slack + JET_ROUNDING * turn
     return Jet(
         u, slopes, slack, turn, most * x.second + UNIT_SECOND_DERIVATIVE * (turn * turn), 1.0
+    )
+
+
+def square_root(x: Jet) -> Jet:
+    """√x of a scalar; its bounds are infinite if x may vanish."""
+    low = x.value[0] - x.first
+    regular = low > 0.0
+    # The others are not used, and must not divide by zero.
+    value, least_value = (root(choose(regular, number, 1.0)) for number in (x.value[0], low))
+    per = choose(regular, 0.5 / least_value, float("inf"))
+    first = per * x.first
+    return Jet(
+        [value],
+        [[0.5 / value * slope[0]] for slope in x.slopes],
+        per * (x.slack + JET_ROUNDING * x.most) + JET_ROUNDING * first,
+        first,
+        per * x.second + 0.5 * (per / least_value) * (per * 2.0 * x.first) * x.first,
+        value + first,
+    )
+
+
+def image(x: Jet, rows: list[Vector], norm_of_rows: Any) -> Jet:
+    """Return M x for a constant matrix M, given by rows, whose norm (of M) is at most a number."""
+    value, first = [dot(row, x.value) for row in rows], norm_of_rows * x.first
+    return Jet(
+        value,
+        [[dot(row, slope) for row in rows] for slope in x.slopes],
+        norm_of_rows * (x.slack + JET_ROUNDING * (x.most + x.first)),
+        first,
+        norm_of_rows * x.second,
+        size(value) + first,
     )

@@ -40,7 +40,10 @@ PATCH_LEG_SCALARS = 18
 
 @dataclass(frozen=True)
 class Patch:
-    """The motion of the platform on the paths of a patch."""
+    """The motion of the platform on the paths of a patch.
+
+    A patch of one direction may have no `turns`; its jets then have no slopes.
+    """
 
     position: Vector
     rotation: Vector
@@ -59,14 +62,20 @@ class Patch:
         return cls(lanes[:3], lanes[3:12], lanes[12:15], turns, *lanes[24:PATCH_SCALARS])
 
     def shifts(self) -> list[Vector]:
-        """Return the derivatives of p along the six coordinates."""
+        """Return the derivatives of p along the six coordinates; none of one direction."""
+        if not self.turns:
+            return []
         zero = [0.0, 0.0, 0.0]
         return [[self.half[i] if i == k else 0.0 for i in range(3)] for k in range(3)] + [zero] * 3
+
+    def _turned(self, value: Vector) -> list[Vector]:
+        turned = [cross(turn, value) for turn in self.turns]
+        return [[0.0, 0.0, 0.0]] * len(turned) + turned
 
     def carried(self, arm: Vector, most: Any, tolerance: Any) -> Jet:
         """R b for a vector b of the platform, |b| ≤ most, that may be off by `tolerance`."""
         value, error = turned(self.rotation, arm), JET_ROUNDING * most
-        slopes = [[0.0, 0.0, 0.0]] * 3 + [cross(turn, value) for turn in self.turns]
+        slopes = self._turned(value)
         bound = most + tolerance
         slack = tolerance + error
         return Jet(
@@ -81,7 +90,7 @@ class Patch:
     def carried_direction(self, direction: Vector, tolerance: Any) -> Jet:
         """R t for a unit vector t that may be turned by an angle ≤ `tolerance`."""
         value = turned(self.rotation, direction)
-        slopes = [[0.0, 0.0, 0.0]] * 3 + [cross(turn, value) for turn in self.turns]
+        slopes = self._turned(value)
         spin = self.spin + tolerance
         second = spin * spin + self.twist + self.spin * tolerance
         return Jet(value, slopes, tolerance + JET_ROUNDING, spin + JET_ROUNDING, second, 1.0)
@@ -113,7 +122,7 @@ class SegmentOnPatch:
     arm: Jet
 
 
-def _lines(patch: Patch, geometry: Vector) -> tuple[Jet, Jet, Jet, Jet]:
+def lines_of(patch: Patch, geometry: Vector) -> tuple[Jet, Jet, Jet, Jet]:
     """Return d, R b, s, R t."""
     a, b, s, t = (geometry[i : i + 3] for i in range(0, 12, 3))
     size_a, size_b, near_a, near_b, near_s, near_t = geometry[12:18]
@@ -128,12 +137,12 @@ def _lines(patch: Patch, geometry: Vector) -> tuple[Jet, Jet, Jet, Jet]:
     return d, arm, fixed, patch.carried_direction(t, near_t)
 
 
-def _across(d: Jet, t: Jet, spin: Any, twist: Any) -> Jet:
+def across(d: Jet, t: Jet, spin: Any, twist: Any) -> Jet:
     """Return d − (d·t) t for a unit vector t that turns with |ω| ≤ spin, |ω′| ≤ twist."""
     along = dot(d.value, t.value)
     value = [x - along * y for x, y in zip(d.value, t.value, strict=True)]
     slopes = []
-    for dd, dt in zip(d.slopes, t.slopes, strict=True):
+    for dd, dt in zip(d.slopes, t.slopes, strict=False):
         rate = dot(dd, t.value) + dot(d.value, dt)
         slopes.append([x - rate * y - along * z for x, y, z in zip(dd, t.value, dt, strict=True)])
     first = d.first + spin * d.most
@@ -155,29 +164,29 @@ def _pointed(
 
 def point_point(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D1."""
-    d, arm, s, t = _lines(patch, geometry)
+    d, arm, s, t = lines_of(patch, geometry)
     return _pointed(d, arm, arm, (d, s, t), None)
 
 
 def point_line(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D2: the foot is R b − (d·t) t."""
-    d, arm, s, t = _lines(patch, geometry)
+    d, arm, s, t = lines_of(patch, geometry)
     near = geometry[17]
-    vector = _across(d, t, patch.spin + near + JET_ROUNDING, patch.twist + patch.spin * near)
+    vector = across(d, t, patch.spin + near + JET_ROUNDING, patch.twist + patch.spin * near)
     slide = inner(d, t)
     return _pointed(vector, arm, total(arm, multiple(slide, t), -1.0), (d, s, t), slide)
 
 
 def line_point(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D3."""
-    d, arm, s, t = _lines(patch, geometry)
-    vector = _across(d, s, geometry[16] + JET_ROUNDING, 0.0)
+    d, arm, s, t = lines_of(patch, geometry)
+    vector = across(d, s, geometry[16] + JET_ROUNDING, 0.0)
     return _pointed(vector, arm, arm, (d, s, t), None)
 
 
 def line_line(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D4 and A1: the foot is R b − k t, k = (d × s)·(t × s) / |t × s|²."""
-    d, arm, s, t = _lines(patch, geometry)
+    d, arm, s, t = lines_of(patch, geometry)
     normal = outer(t, s)
     u, per_sine = unit(normal), inverse(length(normal))
     slide = multiple(per_sine, inner(outer(d, s), u))

@@ -10,7 +10,7 @@ import pytest
 
 from gsp.variation import jets
 from gsp.variation.jets import Jet
-from gsp.variation.legs import Patch, _across
+from gsp.variation.legs import Patch, across
 
 E = 1e-3
 I, J, _ = np.eye(3)  # noqa: E741 - axes
@@ -66,6 +66,13 @@ RULES = {
     "multiple": (jets.multiple, lambda f, x: times(f[0], x), (FACTOR, GROWING), BOTH),
     "joined": (jets.joined, lambda x, y: [*x, *y], (GROWING, SIDE), BOTH),
     "inverse": (jets.inverse, lambda x: [1 / x[0]], (path(1, -E, -E * E),), BOTH),
+    "square root": (
+        jets.square_root, lambda x: [mpmath.sqrt(x[0])], (path(1, -E, -E * E),), BOTH
+    ),
+    "image": (
+        lambda x: jets.image(x, [[2.0, 0.0, 0.0], [0.0, -2.0, 0.0]], 2.0),
+        lambda x: [2 * x[0], -2 * x[1]], (GROWING,), BOTH,
+    ),
     "length, radial": (jets.length, lambda x: [size(x)], (GROWING,), ("first",)),
     "length, across": (jets.length, lambda x: [size(x)], (path(I, E * J, E * E * I),), ("second",)),
     "unit, across": (jets.unit, lambda x: times(1 / size(x), x), (path(I, E * J),), ("first",)),
@@ -136,7 +143,7 @@ def test_bounds_of_the_part_across_a_line_hold_and_are_attained(d, angle, attain
         x, line = d[0](s), turned(theta(s), [1, 0, 0])
         return sum_of(x, times(-dot(x, line), line))
 
-    check(_across(d[1], t, spin, twist), across, attained)
+    check(across(d[1], t, spin, twist), across, attained)
 
 
 @pytest.mark.parametrize(
