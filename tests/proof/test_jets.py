@@ -139,11 +139,11 @@ def test_bounds_of_the_part_across_a_line_hold_and_are_attained(d, angle, attain
     speed = float(mpmath.diff(theta, 0))
     t = Jet(I.tolist(), [[0.0, speed, 0.0], *[[0.0] * 3] * 5], 0.0, spin, spin**2 + twist, 1.0)
 
-    def across(s):
+    def part(s):
         x, line = d[0](s), turned(theta(s), [1, 0, 0])
         return sum_of(x, times(-dot(x, line), line))
 
-    check(across(d[1], t, spin, twist), across, attained)
+    check(across(d[1], t, spin, twist), part, attained)
 
 
 @pytest.mark.parametrize(
