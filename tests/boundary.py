@@ -420,6 +420,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "strokes": None, "home": PLANAR_POSE, "ellipsoid": None,
     },
     "PlanarDesign.at": {"pose": PLANAR_POSE},
+    "rendering.render_motion": {"poses": POSE.reshape(1)},
     "record.Index": _fields(gsp.indices.INDICES["control_number"]),
     "record.Properties": _fields(gsp.indices.INDICES["control_number"].properties),
     "record.Invariance": _fields(gsp.indices.INDICES["control_number"].invariance),
@@ -561,9 +562,10 @@ VARIADIC: dict[str, Any] = {
     "Design.replace": {"legs": [leg.name for leg in DESIGN.legs], **KINDS},
 }
 
-# Callables without a valid example: one needs a graphics library, one a region in a plane.
+# Callables without a valid example: two need a graphics library, one a region in a plane.
 WITHOUT_EXAMPLE = (
     "gsp.bridges.mujoco.rendering.render",
+    "gsp.bridges.mujoco.rendering.render_motion",
     "gsp.workspace.sets.region.regions.Region.polygons",
 )
 

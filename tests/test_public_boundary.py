@@ -55,7 +55,8 @@ SHAPES = ("no axes", "four axes", "matrices")
 SECONDS_OF_A_CALL, COMPILING = 30, 240
 # Callables of which one call takes long: each argument gets a few of the invalid values.
 SLOW = ("mapping.section", "surfaces.surface", "planar_section", "checking.check",
-        "rendering.render", "Pose.sample", "corner_poses", "simulate")  # fmt: skip
+        "rendering.render", "rendering.render_motion", "Pose.sample", "corner_poses",
+        "simulate")  # fmt: skip
 
 
 # What is right for an argument, by callable, and cannot be held here: all of a long work, or a

@@ -3,7 +3,7 @@
 from gsp.bridges.agreements import Agreement, agreement
 from gsp.bridges.drives import Drives
 from gsp.bridges.exports import export
-from gsp.bridges.mujoco import Simulation, mujoco_rates, render, simulate, to_mjcf
+from gsp.bridges.mujoco import Simulation, mujoco_rates, render, render_motion, simulate, to_mjcf
 from gsp.bridges.pinocchio import PinocchioModel, pinocchio_rates, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates
 from gsp.bridges.reading import read_model
@@ -28,6 +28,7 @@ __all__ = [
     "pinocchio_rates",
     "read_model",
     "render",
+    "render_motion",
     "simulate",
     "to_mjcf",
     "to_pinocchio",

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gsp import arguments
+from gsp.bridges import Solids, render_motion
 from gsp.checks import check_items, check_type, is_a
 from gsp.determinant import Maximum
 from gsp.errors import InvalidInput, expected
@@ -30,12 +31,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from mpl_toolkits.mplot3d import Axes3D
 
+RENDERERS = ("matplotlib", "mujoco")
+# Pixels of a picture by MuJoCo: those of its place in a film.
+WIDTH, HEIGHT = 800, 700
 # What numbers the poses of a batch, which is no path of `gsp.sweeps`.
 SAMPLE = "sample"
 
 
 @arguments.validated(
-    design=arguments.kind(Design), frames=arguments.integer(2), seconds=arguments.positive
+    design=arguments.kind(Design),
+    frames=arguments.integer(2),
+    seconds=arguments.positive,
+    renderer=arguments.one_of(*RENDERERS),
 )
 def animate(
     design: Design,
@@ -47,6 +54,8 @@ def animate(
     maximum: float | Maximum | None = None,
     frames: int = 60,
     seconds: float = 6.0,
+    renderer: str = "matplotlib",
+    solids: Solids | None = None,
 ) -> Film:
     """Return a film of a design that moves along a path, beside its indices on that path.
 
@@ -70,6 +79,11 @@ def animate(
         Most pictures, ≥ 2. Of a longer path equally spaced poses are shown; the curves have all.
     seconds : float [s]
         How long the film lasts.
+    renderer : "matplotlib" or "mujoco"
+        What draws the mechanism: lines in space, or the links of the model of
+        `gsp.bridges.to_mjcf`, drawn by MuJoCo without a window (see `gsp.bridges.render_motion`).
+    solids : Solids or None
+        Sizes of the links for MuJoCo.
 
     Returns
     -------
@@ -78,9 +92,12 @@ def animate(
     Raises
     ------
     InvalidInput, UnknownIndex, MissingParameter
-        As `gsp.sweep` does, for a path over a plane, or a pose that is not finite.
+        As `gsp.sweep` does, for a path over a plane, or a pose that is not finite; for solids
+        without the renderer "mujoco".
     MissingSoftware
-        Without matplotlib.
+        Without matplotlib, or without MuJoCo where it draws.
+    GspError, UndefinedPosture
+        See `gsp.bridges.render_motion`.
 
     Examples
     --------
@@ -93,11 +110,13 @@ def animate(
     path = _checked(path)
     drawn = list(check_items("indices", [indices] if is_a(indices, str) else indices, "names"))
     require_matplotlib()
+    if solids is not None and renderer != "mujoco":
+        raise InvalidInput(expected("solids", 'renderer="mujoco", which draws them', renderer))
     table = None
     if drawn:
         table = sweep(design, path, drawn, length=length, ellipsoid=ellipsoid, maximum=maximum)
     with style():
-        return _film(design, path, table, frames, seconds)
+        return _film(design, path, table, frames, seconds, renderer, solids)
 
 
 def _checked(path: Path | Pose) -> Path:
@@ -115,13 +134,27 @@ def _checked(path: Path | Pose) -> Path:
     return path
 
 
-def _film(design: Design, path: Path, table: Any, most: int, seconds: float) -> Film:
+def _film(
+    design: Design,
+    path: Path,
+    table: Any,
+    most: int,
+    seconds: float,
+    renderer: str,
+    solids: Solids | None,
+) -> Film:
     from matplotlib.ticker import MaxNLocator
 
     n = path.pose.size
     shown = np.unique(np.linspace(0, n - 1, min(most, n)).round().astype(int))
     columns = [] if table is None else index_columns(table)
-    figure, space, curves = film_panels(len(columns))
+    solid = renderer == "mujoco"
+    pictures = (
+        render_motion(design, path.pose[shown], solids, width=WIDTH, height=HEIGHT)
+        if solid
+        else None
+    )
+    figure, space, curves = film_panels(len(columns), flat=solid)
     for name, ax in zip(columns, curves, strict=True):
         along(table, name, ax)
         ax.set_title("", loc="left")
@@ -129,7 +162,11 @@ def _film(design: Design, path: Path, table: Any, most: int, seconds: float) -> 
             ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     if path.motion:
         figure.suptitle(plain(path.motion), fontsize=10)
-    scene = _Scene(space, design, path.pose[shown])
+    scene: _Scene | _Rendered
+    if pictures is None:
+        scene = _Scene(cast("Axes3D", space), design, path.pose[shown])
+    else:
+        scene = _Rendered(space, design, pictures)
     show = _Pictures(scene, [_Pointer(ax) for ax in curves if ax.lines], shown)
     show(0)
     # The layout of the first picture is that of all.
@@ -158,6 +195,20 @@ class _Scene:
         return draw_parts(self.ax, self.design.at(self.poses[frame]), self.size)
 
 
+class _Rendered:
+    """Pictures of the mechanism that were drawn before."""
+
+    def __init__(self, ax: Axes, design: Design, pictures: NDArray[np.uint8]) -> None:
+        self.pictures = pictures
+        self.image = ax.imshow(pictures[0], interpolation="antialiased")
+        ax.set_axis_off()
+        ax.set_title(design_label(design.name), fontsize=11)
+
+    def draw(self, frame: int) -> None:
+        """Show one of them."""
+        self.image.set_data(self.pictures[frame])
+
+
 class _Pointer:
     """A dot and a line across the axes, on the curve of an index."""
 
@@ -177,7 +228,7 @@ class _Pointer:
 class _Pictures(ReadOnly):
     """What a film calls with the number of a picture; an object, so that films can be pickled."""
 
-    scene: _Scene
+    scene: _Scene | _Rendered
     pointers: Sequence[_Pointer]  # of the axes with a value
     shown: NDArray[np.int64]  # the pose of each picture
 

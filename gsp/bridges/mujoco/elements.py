@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gsp.bridges.linkage import Motion
+from gsp.bridges.linkage import Chain, Motion
 from gsp.bridges.markup import Node, joined
 from gsp.bridges.shapes import Capsule
 from gsp.geometry.pose import Pose
@@ -16,6 +16,8 @@ from gsp.geometry.vectors import Array
 
 # Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
 SHORTEST_CAPSULE = 1e-13
+# Largest height and width of a picture of a model, in pixels.
+LARGEST_PICTURE = (1200, 1600)
 COLOURS = MappingProxyType(
     {
         "base": "0.35 0.37 0.40 1",
@@ -81,3 +83,30 @@ def frame_of(pose: Pose, unit: float) -> dict[str, str]:
 def wxyz(pose: Pose) -> Array:
     """Return the quaternion of a pose as MuJoCo orders it."""
     return np.roll(pose.quaternion, 1)
+
+
+def configuration(
+    start: Iterable[Chain], chains: Iterable[Chain], pose: Pose, unit: float
+) -> list[float]:
+    """Return the coordinates (qpos) of a model at a pose, in the order of the model [m, rad].
+
+    Parameters
+    ----------
+    start : iterable of Chain
+        The legs at the pose of the model.
+    chains : iterable of Chain
+        The legs at `pose`.
+    pose : Pose of shape ()
+    unit : float [m]
+        Length of the design's unit.
+    """
+    values: list[float] = []
+    for first, chain in zip(start, chains, strict=True):
+        ends = len(chain.motions) if chain.leg.platform_line else -len(chain.platform)
+        for own, motion in zip(first.motions[:ends], chain.motions[:ends], strict=True):
+            if motion.kind == "ball":  # the turn since the pose of the model
+                turn = Pose(np.zeros(3), np.asarray(own.value).T @ np.asarray(motion.value))
+                values += wxyz(turn).tolist()
+            else:  # a CCC leg may slide the other way than in the model
+                values.append(metric(motion, unit) * float(motion.axis @ own.axis))
+    return [*values, *(pose.position * unit), *wxyz(pose)]

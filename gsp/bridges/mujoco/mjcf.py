@@ -13,12 +13,13 @@ from gsp.bridges.drives import Drives, joint_limits
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.markup import Node, joined
 from gsp.bridges.mujoco.elements import (
+    LARGEST_PICTURE,
     add_body,
     add_geoms,
+    configuration,
     frame_of,
     metric,
     moved,
-    wxyz,
 )
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
@@ -170,7 +171,8 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     add(root, "compiler", angle="radian", autolimits="true")
     add(root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity=joined(gravity))
     visual = add(root, "visual")
-    add(visual, "global", offwidth="1600", offheight="1200")
+    high, wide = map(str, LARGEST_PICTURE)
+    add(visual, "global", offwidth=wide, offheight=high)
     add(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
     sky = add(
         add(root, "asset"), "texture", type="skybox", builtin="flat", rgb1="1 1 1", rgb2="1 1 1"
@@ -299,12 +301,7 @@ def _add_sensors(root: Node, chains: Iterable[Chain]) -> None:
 
 
 def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> None:
-    values: list[float] = []
-    for chain in chains:
-        motions = chain.base + chain.middle + (chain.platform if chain.leg.platform_line else ())
-        for motion in motions:
-            values += [1.0, 0.0, 0.0, 0.0] if motion.kind == "ball" else [metric(motion, unit)]
-    values += [*(pose.position * unit), *wxyz(pose)]
+    values = configuration(chains, chains, pose, unit)
     targets = [metric(motion, unit) for motion in _active(chains)]
     keyframe = ElementTree.SubElement(root, "keyframe")
     ElementTree.SubElement(keyframe, "key", name="pose", qpos=joined(values), ctrl=joined(targets))

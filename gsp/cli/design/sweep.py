@@ -30,7 +30,13 @@ from gsp.cli.inputs.options import (
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.indices import ellipsoid_text
-from gsp.cli.outputs.pictures import check_film, check_picture, save_film, save_picture
+from gsp.cli.outputs.pictures import (
+    Renderer,
+    check_film,
+    check_picture,
+    save_film,
+    save_picture,
+)
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.request import names_for
@@ -132,6 +138,13 @@ def sweep_command(
             show_default=False,
         ),
     ] = None,
+    renderer: Annotated[
+        Renderer,
+        typer.Option(
+            help="What draws the mechanism of a film: matplotlib lines, mujoco the links of its "
+            "model (set MUJOCO_GL=egl or osmesa where there is no display)."
+        ),
+    ] = Renderer.matplotlib,
     force: Force = False,
 ) -> None:
     """Evaluate indices along a translation or a rotation, or over a plane.
@@ -155,6 +168,8 @@ def sweep_command(
         check_film(film, overwrite=force)
         if over is not None:
             raise InvalidInput(expected("--film", "--translate or --rotate", "--over"))
+    else:
+        refuse_unused(context, ["renderer"], "a sweep without --film, whose mechanism it draws")
     if rotate is None:
         given = "--over" if translate is None else "--translate"
         refuse_unused(context, ["through"], f"{given}: expected --rotate, whose axis it places")
@@ -175,20 +190,16 @@ def sweep_command(
         attributes = {str(k): v for k, v in table.attrs.items()}
         write_table(table, out, attributes, overwrite=force)
         say(f"Table      {out}")
-    if plot is not None:
+    if plot is not None or film is not None:
         from gsp import plots
-
+    if plot is not None:
         save_picture(plots.sweep(table, names), plot, overwrite=force)
     if film is not None:
-        from gsp import plots
-
         facts = table.attrs.get("maximum")
         known = facts["value"] or None if isinstance(facts, dict) else None
-        save_film(
-            plots.animate(found, path, names, length=length, ellipsoid=spheroid, maximum=known),
-            film,
-            overwrite=force,
-        )
+        values: dict[str, Any] = {"length": length, "ellipsoid": spheroid, "maximum": known}
+        moving = plots.animate(found, path, names, **values, renderer=renderer.value)
+        save_film(moving, film, overwrite=force)
 
 
 def _check_steps(steps: int, over: str | None) -> None:

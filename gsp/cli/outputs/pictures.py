@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,6 +35,13 @@ def check_film(path: Path, *, overwrite: bool = False) -> None:
         check_film(path, overwrite=overwrite)
     except InvalidInput as error:
         raise InvalidInput(str(error).replace("film:", "--film:", 1)) from error
+
+
+class Renderer(StrEnum):
+    """What draws the mechanism of a film."""
+
+    matplotlib = "matplotlib"
+    mujoco = "mujoco"
 
 
 def save_film(film: Film, path: Path, *, overwrite: bool = False) -> None:

@@ -142,16 +142,20 @@ def space_panels(count: int, side: float, columns: int) -> tuple[Figure, list[Ax
     return figure, panels
 
 
-def film_panels(count: int) -> tuple[Figure, Axes3D, list[Axes]]:
-    """Return a new figure with axes in space, and that many panels in a column beside them."""
+def film_panels(count: int, *, flat: bool = False) -> tuple[Figure, Axes, list[Axes]]:
+    """Return a new figure with axes in space, and that many panels in a column beside them.
+
+    With `flat` these axes are for a picture.
+    """
+    projection = None if flat else "3d"
     if not count:
         figure = _new_figure(6.4, 5.6)
-        return figure, cast("Axes3D", figure.add_subplot(projection="3d")), []
+        return figure, figure.add_subplot(projection=projection), []
     figure = _new_figure(10.4, 5.6)
     # An empty column keeps the label of the vertical axis, which is outside of the axes in space,
     # away from those of the panels.
     grid = figure.add_gridspec(count, 3, width_ratios=[30, 3, 20])
-    space = cast("Axes3D", figure.add_subplot(grid[:, 0], projection="3d"))
+    space = figure.add_subplot(grid[:, 0], projection=projection)
     return figure, space, [figure.add_subplot(grid[row, 2]) for row in range(count)]
 
 
