@@ -233,22 +233,22 @@ def spoiled(form, old, new, folder):
 
 
 WRONG = {
-    "not xml": ("urdf", "</robot>", "", "line \\d+: not XML: no element found"),
-    "root": ("sdf", "<sdf ", "<sdg ", "line \\d+: not XML: mismatched"),
+    "not xml": ("urdf", "</robot>", "", r"line \d+: not XML: no element found"),
+    "root": ("sdf", "<sdf ", "<sdg ", r"line \d+: not XML: mismatched"),
     "kind": ("urdf", 'name="d1" type="prismatic"', 'name="d1" type="slide"',
              'line \\d+, <joint name=.d1.>, type: expected one of fixed, .*received \'slide\''),
     "parent": ("urdf", '<parent link="leg1_lower"', '<parent link="nobody"',
-               "line \\d+, <joint name=.d1.>, <parent> link: expected the name of a link"),
+               r"line \d+, <joint name=.d1.>, <parent> link: expected the name of a link"),
     "number": ("urdf", '<axis xyz="0.0 0.0 1.0"', '<axis xyz="0.0 zero 1.0"',
                "<axis> xyz: expected 3 finite numbers"),
     "axis": ("urdf", '<axis xyz="0.0 0.0 1.0"', '<axis xyz="0 0 0"',
              "<axis> xyz: expected a direction other than zero"),
     "sdf child": ("sdf", "<child>leg2_upper</child>", "<child>nobody</child>",
-                  "line \\d+, <joint name=.d2.>, <child>: expected the name of a link"),
+                  r"line \d+, <joint name=.d2.>, <child>: expected the name of a link"),
     "sdf kind": ("sdf", 'name="d1" type="prismatic"', 'name="d1" type="screw"',
-                 "line \\d+, <joint name=.d1.>, type: expected one of"),
+                 r"line \d+, <joint name=.d1.>, type: expected one of"),
     "sdf axis": ("sdf", "<xyz>0.0 0.0 1.0</xyz>", "<xyz>0 0</xyz>",
-                 "line \\d+, <axis>, <xyz>: expected 3 finite numbers, received '0 0'"),
+                 r"line \d+, <axis>, <xyz>: expected 3 finite numbers, received '0 0'"),
     "sdf leg": ("sdf", 'name="d1" type="prismatic"', 'name="d1" type="revolute"',
                 "leg 1 \\(joints leg1_base d1 leg1_platform\\): expected one slide"),
     "mjcf": ("mjcf", 'joint="d1"', 'joint="d9"', "expected a model that MuJoCo reads.*line \\d+"),
@@ -271,7 +271,7 @@ def test_errors_name_file_line_element_and_key(case, tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"loops"', "'loops'", "line \\d+: not JSON"),
+        ('"loops"', "'loops'", r"line \d+: not JSON"),
         ("leg3_platform", "nobody", "loop 'leg3', link_1: expected a link of lift.urdf"),
         ('"link_2": "platform"', '"link_2": 3', "loops\\[0\\].link_2: expected a name"),
         ('"position": [', '"position": [1, ', "loops\\[0\\].position: expected 3 numbers"),
@@ -378,6 +378,52 @@ def test_plates_in_json(tmp_path):
     assert_same(read_model(path), gsp.catalogue.design("basic-robotics-large"))
 
 
+HALF = {key: value for key, value in PLATES.items() if key != "Params"}
+
+
+def yaml_text(plates):
+    """Return the file of some plates as YAML, with one key per line."""
+    return "".join(
+        f"{key}: {value}\n" if isinstance(value, str) else
+        f"{key}:\n" + "".join(f"  {name}: {number}\n" for name, number in value.items())
+        for key, value in plates.items()
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("form", ["json", "yaml"])
+def test_plates_without_a_rest_height_start_half_extended(form, tmp_path):
+    """As `midHeightEstimate` of the package places them: all legs have their middle length."""
+    path = tmp_path / f"sp.{form}"
+    text = (json.dumps if form == "json" else yaml_text)(HALF)
+    path.write_text(text.replace("0.9", "9e-1"))
+    found = read_model(path)
+    np.testing.assert_allclose(found.at(found.home).joints, 1.125, rtol=1e-14)
+    given = gsp.catalogue.design("basic-robotics-large")
+    assert_same(found.replace(home=given.home), given)
+
+
+def test_cable_robots_within_a_model_and_numbers_of_yaml(tmp_path):
+    """The form of cdpr3/sdf/cube.yaml; 2e0, +2 and 02 are numbers, as C++ programs read them."""
+    path = tmp_path / "cube.yaml"
+    lines = POINTS.replace("-2.0", "-2e0").replace(" 2.0,", " +2,").replace("3.5]", "03.5]")
+    path.write_text("model:\n" + "".join(f"  {x}\n" for x in lines.splitlines()))
+    found = read_model(path)
+    path.write_text(POINTS)
+    assert_same(found, read_model(path))
+
+
+WRONG_PLATES = [
+    ("0.9", "-0.9", "BottomPlate.JointRadius", "a number > 0"),
+    ("0.3", "0", "TopPlate.JointRadius", "a number > 0"),
+    ("0.16", "9" * 400, "TopPlate.Thickness", "a finite number"),
+    ("0.9", "9" * 102, "BottomPlate.JointRadius", r"a number of at most 1e\+100 in size"),
+    (": 25", ": 200", "TopPlate.JointSpacing", r"an angle in \[0, 120\] degrees"),
+    (": 1.5", ": 0.5", "Actuators.MaxExtension", "at least MinExtension, which is 0.75"),
+    ("0.75", "-1", "Actuators.MinExtension", "a number ≥ 0"),
+    ("1.2", "-1.2", "Params.RestHeight", "a number > 0"),
+]
+
+
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
@@ -390,14 +436,27 @@ def test_plates_in_json(tmp_path):
         ("a.yml", "points: [1, 2]", "line 1, key points: expected a list of at least 6"),
         ("a.json", json.dumps(PLATES).replace('"JointSpacing": 25', '"JointSpacing": "x"'),
          "key TopPlate.JointSpacing: expected a finite number, received 'x'"),
-        ("a.json", json.dumps(PLATES).replace("RestHeight", "Rest"),
-         "key Params.RestHeight: expected a value, received none"),
+        ("a.json", json.dumps(PLATES, indent=1).replace('"MaxExtension"', '"Max"'),
+         "line 16, key Actuators.MaxExtension: expected a value, received none"),
         ("a.json", '{"a": 1,}', "a.json, line 1: not JSON"),
         ("a.json", '{"legs": 6}', "expected a file of oKermorgant/cdpr, .*received legs"),
         ("a.json", "[" * 100000, "not JSON"),
         ("a.json", json.dumps({"actuator": [{"active": False}] * 6}), "at least 6 active"),
         ("a.json", json.dumps(PLATES).replace("0.3", "NaN"), "TopPlate.JointRadius: expected a"),
-        ("a.json", json.dumps(PLATES).replace("0.9", "-0.9"), "a.json: base_radius: expected"),
+        ("a.json", json.dumps(HALF).replace("0.75", "0.5").replace("1.5", "0.6"),
+         "line 1, key Actuators.MaxExtension: expected a mean with MinExtension above 0.71"),
+        ("a.yaml", POINTS.replace("[3.5, 2.0, 3.5]", "[3.5, 1:30, 3.5]", 1),
+         r"line 18, key points\[6\].frame\[1\]: expected a finite number, received '1:30'"),
+        ("a.yaml", POINTS.replace("[3.5, 2.0, 3.5]", "[3.5, 1_0, 3.5]", 1), "received '1_0'"),
+        ("a.yaml", POINTS.replace("[3.5, 2.0, 3.5]", f"[{'9' * 5000}, 2, 3.5]", 1),
+         r"line 18, key points\[6\].frame\[0\]: expected a finite number"),
+        ("a.yaml", POINTS.replace("  mass: 150", "  mass: 150\n  mass: 15"),
+         "a.yaml, line 4, key platform.mass: expected each key once, received it again"),
+        ("a.yaml", POINTS + "points: []\n", "line 22, key points: expected each key once"),
+        ("a.yaml", POINTS.replace("  mass: 150", "  mass: 15\a0"),
+         r"a.yaml, line 3: expected no control characters, received '.x07'"),
+        ("a.json", '{"a": [{"b": 1, "c": {}},\n {"b": 1,\n "b": 2}]}',
+         r"a.json, line 3, key a\[1\].b: expected each key once"),
     ],
 )  # fmt: skip
 def test_errors_of_packages_name_line_and_key(name, text, message, tmp_path):
@@ -405,6 +464,61 @@ def test_errors_of_packages_name_line_and_key(name, text, message, tmp_path):
     path.write_text(text)
     with pytest.raises(MalformedFile, match=message):
         read_model(path)
+
+
+@pytest.mark.parametrize("form", ["json", "yaml"])
+@pytest.mark.parametrize(("old", "new", "key", "wanted"), WRONG_PLATES)
+def test_wrong_plates_are_named_as_in_the_file(form, old, new, key, wanted, tmp_path):
+    path = tmp_path / f"sp.{form}"
+    text = json.dumps(PLATES, indent=2) + "\n" if form == "json" else yaml_text(PLATES)
+    path.write_text(text.replace(old, new, 1))
+    line = 1 + text[: text.index(old)].count("\n")
+    with pytest.raises(
+        MalformedFile, match=f"sp.{form}, line {line}, key {key}: expected {wanted}"
+    ):
+        read_model(path)
+
+
+def test_integers_of_any_length_are_numbers(tmp_path):
+    """Beyond 2^63 numpy has them as objects."""
+    path = tmp_path / "sp.json"
+    path.write_text(json.dumps(PLATES).replace("0.16", str(10**20)))
+    assert read_model(path).platform_points[0, 2] == -1e20
+    path.with_suffix(".yaml").write_text(POINTS.replace("3.5]", f"{10**20}]", 1))
+    assert read_model(path.with_suffix(".yaml")).base_points[0, 2] == 1e20
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('anchor="', 'anchor="" name="', r"line \d+, <connect name=.*>, anchor: expected numbers"),
+        ('anchor="', 'anchor=" \t" name="', "<connect name=.*>, anchor: expected numbers, rec"),
+        ('pos="', 'pos="nan 0 0" euler="', r"line \d+, <body name=.*>, pos: expected finite num"),
+        ('axis="', 'axis="1 inf 0" name="', "axis: expected finite numbers, received '1 inf 0'"),
+        ('pos="', 'pos="1e101 0 0" euler="', "pos: expected finite numbers, received '1e101 0 0'"),
+    ],
+)
+def test_numbers_of_mjcf_are_checked_before_mujoco(old, new, message, tmp_path, monkeypatch):
+    """MuJoCo loads no further model after an empty anchor: it must not be called."""
+    text = foreign_mjcf(LIFT).replace(old, new, 1)
+    (tmp_path / "part.xml").write_text(text)
+    whole = '<mujoco><include file="part.xml"/></mujoco>'
+    (tmp_path / "whole.xml").write_text(whole)
+    monkeypatch.setattr("mujoco.MjModel.from_xml_path", lambda _: pytest.fail("called"))
+    for name in ("part.xml", "whole.xml"):
+        with pytest.raises(MalformedFile, match=f"part.xml, .*{message}"):
+            read_model(tmp_path / name)
+
+
+def test_errors_of_mujoco_of_other_kinds_are_of_the_library(tmp_path, monkeypatch):
+    (tmp_path / "a.xml").write_text("<mujoco/>")
+
+    def fail(_):
+        raise RuntimeError("Caught an unknown exception!")
+
+    monkeypatch.setattr("mujoco.MjModel.from_xml_path", fail)
+    with pytest.raises(MalformedFile, match=r"a\.xml: .*MuJoCo reads, .*unknown exception"):
+        read_model(tmp_path / "a.xml")
 
 
 def test_legs_of_five_freedoms_and_offset_slides_are_refused(tmp_path):

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gsp.arguments import LARGEST_NUMBER
 from gsp.bridges.mujoco.simulation import load_mujoco
 from gsp.bridges.reading.linkages import Freedom, Link, Linkage
-from gsp.bridges.reading.xml_lines import XmlFile
-from gsp.errors import MalformedFile, expected
+from gsp.bridges.reading.xml_lines import Node, XmlFile
+from gsp.errors import MalformedFile, brief, expected
+from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
@@ -20,6 +22,21 @@ if TYPE_CHECKING:
 
 WORLD = "world"
 LONGEST_REASON = 300  # characters
+# Attributes that hold numbers, of which places and axes of bodies, joints and sites are made.
+NUMBERS = (
+    *(
+        "anchor",
+        "axis",
+        "axisangle",
+        "diaginertia",
+        "euler",
+        "fromto",
+        "fullinertia",
+        "mass",
+        "pos",
+    ),
+    *("quat", "range", "ref", "relpose", "xyaxes", "zaxis"),
+)
 
 
 def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
@@ -37,9 +54,10 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
     if root.tag != "mujoco":
         wanted = "<mujoco>"
         raise MalformedFile(expected(f"{path}, root element", wanted, f"<{root.tag}>"))
+    _check_numbers(path, set())
     try:
         model = program.MjModel.from_xml_path(str(path))
-    except ValueError as error:
+    except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())[:LONGEST_REASON]
         raise MalformedFile(expected(str(path), "a model that MuJoCo reads", reason)) from error
     data = program.MjData(model)
@@ -62,6 +80,32 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
         places=places,
         links=links,
     )
+
+
+def _check_numbers(path: Path, seen: set[Path]) -> None:
+    """Raise MalformedFile for an attribute without numbers, or with NaN or infinite ones.
+
+    An empty `anchor` ends MuJoCo 3 and 4 with an error after which it loads no further model in
+    the same process: the next call waits without end. NaN is not named by MuJoCo.
+    """
+    file = XmlFile(path)
+    for node in file.root.iter():
+        for key in NUMBERS:
+            text = node.get(key)
+            if text is not None:
+                _check_attribute(file, node, key, text)
+        name = node.get("file") if node.tag == "include" else None
+        included = path.parent / (name or "")
+        if name and included not in seen and included.is_file():
+            _check_numbers(included, seen | {included})
+
+
+def _check_attribute(file: XmlFile, node: Node, key: str, text: str) -> None:
+    parts = text.split()
+    if not parts:
+        file.fail(node, key, "numbers", "an empty text")
+    if not all(abs(number_of(part)) <= LARGEST_NUMBER for part in parts):
+        file.fail(node, key, "finite numbers", brief(text))
 
 
 def _name(program: Any, model: mujoco.MjModel, kind: str, number: int) -> str:
