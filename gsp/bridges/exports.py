@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
@@ -16,7 +17,7 @@ from gsp.bridges.sdf import to_sdf
 from gsp.bridges.solids import Solids
 from gsp.bridges.urdf import to_urdf
 from gsp.checks import check_text
-from gsp.errors import UnknownName
+from gsp.errors import InvalidInput, UnknownName, expected
 from gsp.files.names import file_stem
 from gsp.files.writing import check_writable, write_file
 from gsp.geometry.pose import Pose
@@ -29,7 +30,7 @@ BESIDE = MappingProxyType(
 Fill = Callable[[Path], object]
 
 
-@arguments.validated(path=arguments.path, overwrite=arguments.flag)
+@arguments.validated(path=arguments.path, floating=arguments.flag, overwrite=arguments.flag)
 def export(
     design: Design,
     pose: Pose,
@@ -38,6 +39,7 @@ def export(
     solids: Solids | None = None,
     drives: Drives | None = None,
     *,
+    floating: bool = True,
     overwrite: bool = False,
 ) -> tuple[Path, ...]:
     """Write a design as a model for another program.
@@ -58,6 +60,8 @@ def export(
         Sizes and masses of the links.
     drives : Drives or None
         Greatest forces and speeds of the actuators.
+    floating : bool
+        False: the platform of a URDF is fixed to the end of leg 1; see `to_urdf`.
     overwrite : bool
         Whether files that exist may be replaced.
 
@@ -71,7 +75,8 @@ def export(
     UnknownName
         If there is no such form.
     UndefinedPosture, MissingParameter, InvalidInput
-        If the model cannot be made; nothing is written then.
+        If the model cannot be made, or another form than "urdf" is not to be floating; nothing is
+        written then.
     UnwritableOutput
         If a file exists already, or the folder cannot be written.
     """
@@ -79,7 +84,10 @@ def export(
         raise UnknownName("form", form, FORMS)
     target = Path(path)
     beside = target.with_name(target.stem.removesuffix(f".{form}") + BESIDE.get(form, ""))
-    fills = FORMS[form](design, pose, solids, drives)
+    if not floating and form != "urdf":
+        raise InvalidInput(expected("floating", f"True for {form}", "False"))
+    filler = FORMS[form] if floating else partial(_fill_urdf, floating=False)
+    fills = filler(design, pose, solids, drives)
     files = dict(zip((target, beside), fills, strict=False))
     for file in files:
         check_writable(file, overwrite=overwrite)
@@ -129,9 +137,14 @@ def _fill_mjcf(
 
 
 def _fill_urdf(
-    design: Design, pose: Pose, solids: Solids | None, drives: Drives | None
+    design: Design,
+    pose: Pose,
+    solids: Solids | None,
+    drives: Drives | None,
+    *,
+    floating: bool = True,
 ) -> tuple[Fill, ...]:
-    tree = to_urdf(design, pose, solids, drives)
+    tree = to_urdf(design, pose, solids, drives, floating=floating)
     return (_text(tree.text), _text(tree.beside()))
 
 

@@ -7,10 +7,10 @@ import pinocchio as pin
 import pytest
 
 import gsp
-from gsp.bridges import export, to_pinocchio
+from gsp.bridges import export, to_pinocchio, to_urdf
 from gsp.bridges.exports import default_file
 from gsp.cli import main
-from gsp.errors import UndefinedPosture, UnknownName, UnwritableOutput
+from gsp.errors import InvalidInput, UndefinedPosture, UnknownName, UnwritableOutput
 
 NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
 TWO = gsp.catalogue.design(NAME)
@@ -145,3 +145,15 @@ def test_command_line_proves(tmp_path, monkeypatch, capsys):
     status, _, err = gsp_command(capsys, "prove", "D5^6")
     assert status == 2
     assert "D5^6" in err
+
+
+def test_the_platform_of_a_urdf_is_on_leg_1_where_asked(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert gsp_command(capsys, "export", NAME, "--to", "urdf", "--on-leg")[0] == 0
+    assert (tmp_path / f"{NAME}.urdf").read_text() == to_urdf(TWO, TWO.home, floating=False).text
+    status, _, err = gsp_command(capsys, "export", NAME, "--to", "sdf", "--on-leg")
+    assert status == 2
+    assert "--on-leg: not used beside --to sdf" in err
+    with pytest.raises(InvalidInput, match="floating: expected True for mjcf, received False"):
+        export(TWO, TWO.home, "mjcf", tmp_path / "two.xml", floating=False)
+    assert not (tmp_path / "two.xml").exists()

@@ -97,6 +97,14 @@ def export(
             show_default=False,
         ),
     ] = None,
+    on_leg: Annotated[
+        bool,
+        typer.Option(
+            "--on-leg",
+            help="Of urdf: fix the platform to the end of leg 1 instead of a floating joint, which "
+            "PyBullet and Drake do not have.",
+        ),
+    ] = False,
     force: Force = False,
 ) -> None:
     """Write a design as a multibody model, assembled at a pose.
@@ -118,6 +126,8 @@ def export(
     refuse_order(context, angles)
     if to is Form.mjcf:
         refuse_unused(context, ["speed"], "--to mjcf, as MuJoCo has no limits of speed")
+    if to is not Form.urdf:
+        refuse_unused(context, ["on_leg"], f"--to {to.value}")
     found = find_mechanism_or_design(name)
     if isinstance(found, Mechanism):
         design = instantiate(found, find_design(template))
@@ -132,5 +142,8 @@ def export(
     if metres is None and not design.unit:
         warn("the design has no unit; its lengths are taken as metres: see --metres")
     target = out or Path(default_file(design.name, to.value))
-    for path in write(design, pose, to.value, target, solids, drives, overwrite=force):
+    files = write(
+        design, pose, to.value, target, solids, drives, floating=not on_leg, overwrite=force
+    )
+    for path in files:
         say(str(path))
