@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from gsp import Design, hexapod, read_design
+from gsp.cli.outputs import waiting
 
 LIFT = hexapod(2, 20, 1, 30, 1.5, degrees=True, strokes=(1.5, 2.5))
 NUMBERS = ("--base-radius", 2, "--base-angle", 20, "--platform-radius", 1,
@@ -129,6 +130,52 @@ def test_a_new_hexapod_from_questions(gsp, monkeypatch):
     assert gsp("new").status == 0
     assert same("hexapod.toml", LIFT).unit == "mm"
     assert next(answers, None) is None
+
+
+def test_wrong_answers_are_said_and_asked_again(gsp, monkeypatch):
+    typed = "mm two -3 0 nan 2 200 -1 20 1 1e 30 0 1e101 1.5 y -1 1.5 1 inf 2.5"
+    answers = iter(typed.split())
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.prompt", lambda text, **_: next(answers))
+    monkeypatch.setattr("typer.confirm", lambda text, **_: next(answers) == "y")
+    result = gsp("new")
+    assert result.status == 0
+    same("hexapod.toml", LIFT)
+    lines = result.err.splitlines()
+    assert len(lines) == 12
+    assert all(line.startswith("gsp: answer: expected ") for line in lines)
+    assert lines[0] == "gsp: answer: expected a number, received 'two'"
+    assert lines[4] == "gsp: answer: expected an angle in [0, 120] degrees, received 200"
+    assert lines[-2] == "gsp: answer: expected at least 1.5, the least length, received 1"
+
+
+def test_a_wrong_option_is_said_before_any_question(gsp, monkeypatch):
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.prompt", lambda text, **_: pytest.fail("asked in vain"))
+    assert "--base-radius: expected" in gsp("new", "--base-radius", -2).error
+
+
+def test_no_line_on_the_work_is_printed_while_a_question_is_open(monkeypatch, capsys):
+    """The clock is that of the test: 100 s of an answer, then 12 s of work."""
+    now = [0.0]
+    monkeypatch.setattr(waiting.time, "monotonic", lambda: now[0])
+
+    class Ended:
+        def __init__(self):
+            self.question = waiting.question()
+            self.question.__enter__()
+
+        def wait(self, seconds):
+            assert seconds > 0.0
+            now[0] += seconds
+            if self.question and now[0] >= 100.0:
+                self.question.__exit__(None, None, None)
+                assert not capsys.readouterr().err
+                self.question = None
+            return now[0] >= 112.0
+
+    waiting._print(Ended(), 10.0, "new")
+    assert capsys.readouterr().err == "gsp: working for 10 s: new\n"
 
 
 def _typed(text, type=str, **_):

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from enum import StrEnum
-from math import inf
+from math import inf, isnan
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, NamedTuple
 
 import typer
 
 from gsp import arguments
 from gsp.cli.inputs.options import Force
+from gsp.cli.outputs import waiting
 from gsp.cli.outputs.console import say, warn
 from gsp.cli.outputs.postures import warn_of
 from gsp.determinant.canonical import canonical
 from gsp.determinant.search import always_singular
-from gsp.errors import InvalidInput, expected
-from gsp.families.circular import hexapod
+from gsp.errors import InvalidInput, brief, expected
+from gsp.families.circular import LARGEST_PAIR_ANGLE_DEG, hexapod
+from gsp.files.cells import number_of
 from gsp.files.names import file_stem
 from gsp.files.writing import check_writable
 from gsp.model.design import Design
@@ -31,12 +34,27 @@ class Arrangement(StrEnum):
 
 
 Number = float | None
+LARGEST = arguments.LARGEST_NUMBER
+ANGLE = arguments.within(0.0, LARGEST_PAIR_ANGLE_DEG, "an angle in [0, 120] degrees")
+
+
+class Question(NamedTuple):
+    """A question, and the check of its answer."""
+
+    text: str
+    check: Callable[[str, float], object]
+
+
 QUESTIONS = {
-    "base_radius": "Radius of the base",
-    "base_angle": "Angle between the two anchors of a pair of the base, in degrees",
-    "platform_radius": "Radius of the platform",
-    "platform_angle": "Angle between the two anchors of a pair of the platform, in degrees",
-    "height": "Height of the platform in the home pose",
+    "base_radius": Question("Radius of the base", arguments.size),
+    "base_angle": Question(
+        "Angle between the two anchors of a pair of the base, in degrees", ANGLE
+    ),
+    "platform_radius": Question("Radius of the platform", arguments.size),
+    "platform_angle": Question(
+        "Angle between the two anchors of a pair of the platform, in degrees", ANGLE
+    ),
+    "height": Question("Height of the platform in the home pose", arguments.size),
 }
 
 
@@ -116,16 +134,17 @@ def new(
     target = out or Path(file_stem(name) + ".toml")
     if missing:
         check_writable(target, overwrite=force, suffixes=(".toml",))  # before any question
-        unit = typer.prompt("Unit of length", default="m") if unit is None else unit
+        for key, value in given.items():
+            if value is not None:
+                QUESTIONS[key].check(f"--{key.replace('_', '-')}", value)
+        unit = _text("Unit of length", default="m") if unit is None else unit
     numbers = {
-        key: typer.prompt(QUESTIONS[key], type=float) if value is None else value
-        for key, value in given.items()
+        key: _number(QUESTIONS[key]) if value is None else value for key, value in given.items()
     }
-    if missing and strokes is None and typer.confirm("Do the legs have limits?", default=False):
-        strokes = (
-            typer.prompt("Least length", type=float),
-            typer.prompt("Greatest length", type=float),
-        )
+    if missing and strokes is None and _yes("Do the legs have limits?"):
+        low = _number(Question("Least length", arguments.within(0.0, LARGEST, "a length ≥ 0")))
+        most = arguments.within(low, LARGEST, f"at least {low:g}, the least length")
+        strokes = (low, _number(Question("Greatest length", most)))
     design = hexapod(
         **numbers,
         arrangement=arrangement.value,
@@ -138,6 +157,32 @@ def new(
     design.write(target, overwrite=force)
     say(str(target))
     _warn_of(design)
+
+
+def _number(question: Question) -> float:
+    """Return the number that is typed; what is none, or out of range, is said, and asked again."""
+    while True:
+        answer = _text(question.text).strip()
+        value = number_of(answer)
+        if isnan(value):
+            warn(expected("answer", "a number", brief(answer)))
+            continue
+        try:
+            question.check("answer", value)
+        except InvalidInput as error:
+            warn(str(error))
+            continue
+        return value
+
+
+def _text(question: str, **options: Any) -> str:
+    with waiting.question():
+        return str(typer.prompt(question, type=str, **options))
+
+
+def _yes(question: str) -> bool:
+    with waiting.question():
+        return typer.confirm(question, default=False)
 
 
 def _check_strokes(strokes: tuple[float, float]) -> None:

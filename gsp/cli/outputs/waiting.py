@@ -12,6 +12,33 @@ from gsp.progress import drawn, running
 
 # Seconds until the first line; each further one comes after twice as many, so that logs stay short.
 SECONDS_BEFORE_LINE = 10.0
+SHORTEST_WAIT = 0.05  # seconds
+
+
+class _Questions:
+    """How long questions have waited for answers."""
+
+    def __init__(self) -> None:
+        self._closed = 0.0
+        self._opened: list[float] = []
+
+    def seconds(self) -> float:
+        """Return the time of all questions, also of one that is open."""
+        return self._closed + sum(time.monotonic() - since for since in self._opened)
+
+    @contextmanager
+    def open(self) -> Iterator[None]:
+        """Count the time of one question."""
+        self._opened.append(time.monotonic())
+        try:
+            yield
+        finally:
+            self._closed = self.seconds()  # before the other: never less than was waited
+            self._opened.clear()
+
+
+_questions = _Questions()
+question = _questions.open  # a context in which a command waits for an answer, and does not work
 
 
 @contextmanager
@@ -39,10 +66,16 @@ def lines(first: float = SECONDS_BEFORE_LINE, command: str = "") -> Iterator[Non
 
 
 def _print(ended: threading.Event, first: float, command: str) -> None:
-    start, after = time.monotonic(), first
-    while not ended.wait(max(start + after - time.monotonic(), 0.0)):
+    start, after = time.monotonic() - _questions.seconds(), first
+
+    def worked() -> float:
+        return time.monotonic() - _questions.seconds() - start
+
+    while not ended.wait(max(after - worked(), SHORTEST_WAIT)):
+        seconds = worked()
+        if seconds < after:  # a question was asked meanwhile
+            continue
         if not drawn():
-            seconds = time.monotonic() - start
             done = running() or command
             print(f"gsp: working for {seconds:.0f} s{done and ': '}{done}", file=sys.stderr)
         after *= 2.0
