@@ -67,17 +67,24 @@ def _csv_rows(path: Path) -> Iterator[Row]:
     first = next((x for x in text.splitlines() if x.strip() and not _comment(x)), "")
     if not first:
         raise MalformedFile(expected(str(path), "a header and rows", "an empty table"))
-    reader = csv.reader(io.StringIO(text), delimiter=max(SEPARATORS, key=first.count))
-    width = 0
+    # Comments may have quotes, which would go on in the next line.
+    lines = ["" if _comment(line) else line for line in text.split("\n")]
+    mark = max(SEPARATORS, key=first.count)
+    reader = csv.reader(io.StringIO("\n".join(lines), newline=""), delimiter=mark)
+    width, start = 0, 1
     try:
         for row in reader:
+            where, raw = f"line {start}", lines[start - 1 : reader.line_num]
+            if any('"' in line for line in raw) and not _closed(raw, mark):
+                got = "none to the end of the file"
+                raise MalformedFile(expected(f"{path}, {where}", "a closing quote", got))
+            start = reader.line_num + 1
             cells = [cell.strip() for cell in row]
             if cells in ([], [""]) or _comment(cells[0]):
                 continue
             width = width or len(cells)
             if len(cells) == width + 1 and not cells[-1]:
                 cells.pop()
-            where = f"line {reader.line_num}"
             if len(cells) != width:
                 wanted = f"{width} cells, as in the header"
                 raise MalformedFile(expected(f"{path}, {where}", wanted, len(cells)))
@@ -85,8 +92,17 @@ def _csv_rows(path: Path) -> Iterator[Row]:
     except csv.Error as error:
         wanted = "a table in CSV"
         raise MalformedFile(
-            expected(f"{path}, line {reader.line_num}", wanted, f"another text: {error}")
+            expected(f"{path}, line {start}", wanted, f"another text: {error}")
         ) from error
+
+
+def _closed(lines: list[str], mark: str) -> bool:
+    """Whether the quotes of a row are closed; only a strict reader states where they are not."""
+    try:
+        next(csv.reader(io.StringIO("\n".join(lines), newline=""), delimiter=mark, strict=True))
+    except csv.Error as error:
+        return "unexpected end" not in str(error)
+    return True
 
 
 def _comment(text: str) -> bool:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gsp import Design, hexapod, read_design
+from gsp import Design, catalogue, hexapod, read_design
 from gsp.cli.outputs import waiting
 
 LIFT = hexapod(2, 20, 1, 30, 1.5, degrees=True, strokes=(1.5, 2.5))
@@ -79,6 +79,16 @@ WRONG = {
     "column": (table(1, "base_y", "bass_y"), "line 1; unknown|unknown column 'bass_y'"),
     "missing": (table(1, "base_y", "leg"), "line 1): expected|none named 'base_y'"),
     "nothing": ("\n\n", "expected a header and rows"),
+    "large": (
+        table(3, "1.5", "1e101"),
+        "line 4, column 'stroke_low': expected a number of at most 1e+100 in size, received 1e+101",
+    ),
+    "quote": (table(4, "D1", '"D1'), "bad.csv, line 5: expected a closing quote"),
+    "last quote": (table(7, "2.5", '"2.5'), "bad.csv, line 8: expected a closing quote"),
+    "again": (
+        table(2, "D1", "D1") + "\n" + table(4, "D1", "D1").splitlines()[4],
+        "bad.csv: line 9: expected another leg than that of line 5, received the same",
+    ),
 }
 
 
@@ -89,6 +99,24 @@ def test_errors_name_line_and_column(gsp, case):
     error = gsp("import", "bad.csv").error
     assert any(part in error for part in wanted.split("|")), error
     assert not Path("bad.toml").exists()
+
+
+def test_quotes_in_comments_and_in_cells_do_not_matter(gsp):
+    rows = LIFT.to_frame().to_csv(index=False).splitlines()
+    rows[1:2] = ['# a, "comment', rows[1].replace("D1", '"D1" ')]
+    Path("a.csv").write_text("\n".join(rows))
+    assert gsp("import", "a.csv").status == 0
+    same("a.toml", LIFT)
+
+
+@pytest.mark.parametrize("axis", ["x", "z"])
+def test_the_arm_of_a_slider_is_refused(gsp, axis):
+    frame = catalogue.design("lane-modified-paradex").to_frame()
+    assert set(frame["drive"]) == {"slider"}
+    frame[f"arm_{axis}"] = 0.5
+    frame.to_csv("a.csv", index=False)
+    wanted = f"line 2, column 'arm_{axis}': expected nothing, as a slider has no arm, received 0.5"
+    assert wanted in gsp("import", "a.csv").error
 
 
 def test_other_files_are_refused(gsp):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gsp.arguments import LARGEST_NUMBER
 from gsp.errors import InvalidInput, UnknownName, apart, brief, expected
 from gsp.model.design.checks import below_zero
 from gsp.model.drives import DRIVES, Crank, Drive
@@ -175,6 +176,10 @@ def _leg(columns: Mapping[str, Sequence[Any]], i: int, place: Place) -> Leg:
 def _drive(columns: Mapping[str, Sequence[Any]], i: int, kind: type[Drive], place: Place) -> Drive:
     """Return the drive of a row; without a branch it is 1."""
     names = DRIVE[3:] if kind is Crank else ()
+    for name in DRIVE[3:]:
+        if not names and name in columns and not is_missing(columns[name][i]):
+            wanted = f"nothing, as a {kind.kind} has no arm"
+            raise InvalidInput(expected(place(i, name), wanted, brief(columns[name][i])))
     for name in ("rod", *names):
         if name not in columns:
             wanted = f"a column with this name, as the leg has a {kind.kind}"
@@ -246,6 +251,9 @@ def _number(
     if kind == "point" and not math.isfinite(found):
         got = "nothing or NaN" if math.isnan(found) else brief(value)
         raise InvalidInput(expected(place(i, name), wanted, got))
+    if math.isfinite(found) and abs(found) > LARGEST_NUMBER:
+        wanted = f"a number of at most {LARGEST_NUMBER:g} in size"
+        raise InvalidInput(expected(place(i, name), wanted, brief(value)))
     return found
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
 from gsp.files.cells import number_of, table_rows
 from gsp.model.design.designs import Design
@@ -22,6 +24,7 @@ from gsp.model.design.frame import (
     is_missing,
     parameters_from_columns,
 )
+from gsp.model.legs import Leg
 
 # Columns that only number the legs.
 NUMBERS = ("", "leg", "index", "i")
@@ -87,6 +90,7 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
                 for name, cells in columns.items()
             }
         design = Design(**parameters_from_columns(columns, place), **parameters)
+        _check_repeated(design, [where for where, _ in filled])
         _check_strokes(columns, design, place)
     except GspError as error:
         raise MalformedFile(f"{path}: {error}") from error
@@ -94,6 +98,26 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
     if unused:
         warnings.warn(f"{path}: not used: {'; '.join(unused)}", stacklevel=2)
     return design
+
+
+def _check_repeated(design: Design, places: list[str]) -> None:
+    """Raise an error for a row whose leg is that of another row: a copy of it, no further leg."""
+    numbers = np.hstack(
+        (design.base_points, design.platform_points)
+        + (design.base_directions, design.platform_directions)
+    )
+    seen: dict[Any, int] = {}
+    for i, leg in enumerate(design.legs):
+        row = tuple(None if math.isnan(x) else x for x in numbers[i].tolist())
+        first = seen.setdefault((_leg_key(leg), row), i)
+        if first != i:
+            wanted = f"another leg than that of {places[first]}"
+            raise InvalidInput(expected(places[i], wanted, "the same"))
+
+
+def _leg_key(leg: Leg) -> Any:
+    drive = leg.drive
+    return leg.name, None if drive is None else (drive.kind, *drive.numbers)
 
 
 def _check_strokes(columns: Mapping[str, list[Any]], design: Design, place: Any) -> None:
