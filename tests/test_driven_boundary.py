@@ -29,6 +29,9 @@ WORKS = MappingProxyType({
     "characteristic_length.characteristic_length": "here", "comparison.in_unit": ROWS,
     "forward_solution.forward": "tests/kinematics/test_driven_forward.py",
     "modes.modes.assembly_modes": "tests/kinematics/test_driven_modes.py",
+    "tracks.track": "tests/kinematics/test_driven_track.py",
+    **{f"prepared.{name}": "tests/kinematics/test_driven_track.py"
+       for name in ("prepare", "Prepared")},
     "travels.travel": "tests/kinematics/test_driven_limits.py",
     "nearest_pose.nearest": "tests/kinematics/test_driven_limits.py",
     "plots.modes.assembly_modes": "tests/plots/test_modes_plot.py",

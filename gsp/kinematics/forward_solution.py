@@ -15,7 +15,7 @@ from gsp.evaluation.backends import check_backend
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
-from gsp.kinematics.driven import held, on_branches, scales_of_held, usable
+from gsp.kinematics.driven.locked import held, on_branches, scales_of_held, usable
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
 from gsp.model.design import Design

@@ -15,7 +15,7 @@ from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, norm
-from gsp.kinematics.reach import crank_bounds, reaches
+from gsp.kinematics.driven.reach import crank_bounds, reaches
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits

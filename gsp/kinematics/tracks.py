@@ -13,11 +13,12 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
+from gsp.kinematics.driven.tracks import Filled, track_driven, unwrapped
 from gsp.kinematics.newton.centred import Centred, centred
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
 
-# How a track ends, by the numbers of `gsp.kinematics.newton.tracking`.
-ENDS = ("", "complete", "not converged", "singular", "undefined", "gap")
+# How a track ends, by the numbers of `gsp.kinematics.newton.tracking`, and with drives at the base.
+ENDS = ("", "complete", "not converged", "singular", "undefined", "gap", "singular drive")
 # The distance of two lines may have changed its sign between two samples if the sum of both values
 # is below this times the changes around them: motions do not double their speed within a sample.
 SPEED_CHANGE = 2.0
@@ -40,7 +41,8 @@ class Track(ReadOnly):
     reached : int
         Number of samples before the track ended; m if it is complete.
     residual : (m,) array [1, rad]
-        Largest joint error, distances as a share of `design.rms_radius`.
+        Largest joint error, distances as a share of `design.rms_radius`; of a drive at the base
+        the error of the length of its rod.
     pieces : (m,) array of int
         Number of pieces into which the path from the previous sample was divided.
     iterations : (m,) array of int
@@ -48,6 +50,8 @@ class Track(ReadOnly):
     margin : (m,) array [1]
         1 / ‖J⁻¹‖ (Frobenius) of the dimensionless Jacobian about the centre of the platform
         anchors, at most its least singular value: how near the track comes to singular postures.
+        With drives at the base J is that of their rods, and the margin at most the least magnitude
+        of the cosine of a rod and the velocity of its tip.
     """
 
     pose: Pose
@@ -94,6 +98,12 @@ def track(
     intervals before and after. (Distances as a share of `design.rms_radius`, angles in rad.) A
     motion that is faster in one interval only is not detected. To continue, track the samples that
     are left from a start on the side that is meant.
+
+    With drives at the base, forward kinematics of the rods from their tips finds the pose of a
+    sample. Then it is proven that on the straight step from the pose before, on which the drives
+    move, no posture and no drive is singular, as in `gsp.travel`; where there is no proof the path
+    is divided as above, also that from the start, whose joint values are known. The drives stay on
+    their branches. Angles of cranks may be counted beyond π, or jump by full turns.
 
     Parameters
     ----------
@@ -149,6 +159,8 @@ def track(
     )
     most = check_integer("max_iterations", max_iterations)
     c = centred(design)
+    if design.driven:
+        samples = unwrapped(design, samples)
     last = _first_crossing(c, samples, limits[1])
     return _tracked(c, samples, last, start, limits, most, skip)
 
@@ -157,27 +169,13 @@ def _tracked(
     c: Centred, samples: Array, last: int, start: Pose, limits: Array, most: int, skip: bool
 ) -> Track:
     """Return the track of all samples, of which those from `last` on are ambiguous."""
-    from gsp.kinematics.newton.tracking import track_samples
-
     position, rotation, numbers = (np.full((len(samples), k), np.nan) for k in (3, 9, 5))
     ends = np.zeros(2, dtype=np.int64)
-    track_samples(
-        samples[:last],
-        np.ascontiguousarray(start.position).reshape(1, 3),
-        np.ascontiguousarray(start.rotation).reshape(1, 9),
-        c.kinds,
-        c.geometry,
-        c.paths,
-        c.design.angular,
-        c.frame,
-        limits,
-        most,
-        skip,
-        position[:last],
-        rotation[:last],
-        numbers[:last],
-        ends,
-    )
+    filled = Filled(position[:last], rotation[:last], numbers[:last], ends)
+    if c.design.driven:
+        track_driven(c, samples[:last], start, limits, most, skip, filled)
+    else:
+        _with_compiled(c, samples[:last], start, limits, most, skip, filled)
     complete = ENDS[ends[1]] == "complete"
     counts = np.nan_to_num(numbers[:, 2:4]).astype(np.int64)
     return Track(
@@ -188,6 +186,33 @@ def _tracked(
         pieces=counts[:, 1],
         iterations=counts[:, 0],
         margin=numbers[:, 4],
+    )
+
+
+def _with_compiled(
+    c: Centred,
+    samples: Array,
+    start: Pose,
+    limits: Array,
+    most: int,
+    skip: bool,
+    filled: Filled,
+) -> None:
+    from gsp.kinematics.newton.tracking import track_samples
+
+    track_samples(
+        samples,
+        np.ascontiguousarray(start.position).reshape(1, 3),
+        np.ascontiguousarray(start.rotation).reshape(1, 9),
+        c.kinds,
+        c.geometry,
+        c.paths,
+        c.design.angular,
+        c.frame,
+        limits,
+        most,
+        skip,
+        *filled,
     )
 
 
@@ -213,7 +238,7 @@ def _of_two_lines(design: Design) -> Mask:
 
 
 def _samples(design: Design, joints: ArrayLike) -> Array:
-    check_undriven("design", design)
+    check_type("design", design, Design)
     n = len(design.joint_names)
     if n != 6:
         raise InvalidInput(expected("design", "six actuators", n))

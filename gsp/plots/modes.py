@@ -10,7 +10,7 @@ from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array
-from gsp.kinematics.driven import held
+from gsp.kinematics.driven.locked import held
 from gsp.kinematics.modes import AssemblyModes
 from gsp.model.design import Design
 from gsp.plots.common.bodies import body

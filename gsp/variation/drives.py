@@ -27,6 +27,7 @@ from gsp.variation.jets import (
     outer,
     row_of,
     scaled,
+    sharpened,
     square_root,
     total,
 )
@@ -60,7 +61,7 @@ def slider_rod(patch: Patch, geometry: Vector, drive: Slider) -> RodOnPatch:
     d, arm, s, _ = lines_of(patch, geometry)
     rod, branch = drive.numbers
     c = across(d, s, geometry[16] + JET_ROUNDING, 0.0)
-    gap = square_root(_less_square(rod, c))
+    gap = square_root(sharpened(_less_square(rod, c)))
     u = scaled(1.0 / rod, total(c, multiple(gap, s), branch))
     return RodOnPatch(u, outer(arm, u, close=False), total(inner(d, s), gap, -branch))
 
@@ -76,9 +77,9 @@ def crank_rod(patch: Patch, geometry: Vector, drive: Crank) -> RodOnPatch:
     plane = image(d, [x, y], size)
     aside = image(d, [y, [-a for a in x]], size)
     half = scaled(0.5, total(_less_square(rod, d), _number(size * size), 1.0))
-    level = total(_number(size * size), half, -1.0)
+    level = sharpened(total(_number(size * size), half, -1.0))
     square = inner(plane, plane)
-    gap = square_root(total(square, inner(level, level), -1.0))
+    gap = square_root(sharpened(total(square, inner(level, level), -1.0)))
     sides = total(multiple(level, plane), multiple(gap, aside), branch)
     joint = multiple(inverse(square), sides)
     tip = image(joint, [list(pair) for pair in zip(x, y, strict=True)], size)

@@ -36,9 +36,9 @@ class Jet:
     ----------
     value : list of scalars
         At the centre.
-    slopes : list of six vectors, or an empty one
-        Derivatives at the centre along the coordinates, scaled by the half-widths. None on a patch
-        of one direction, where `slack` bounds tolerances and rounding alone.
+    slopes : list of six vectors, or of one
+        Derivatives at the centre along the coordinates, scaled by the half-widths; on a patch of
+        one direction the derivative along it.
     slack, first, second : scalars
         Bounds of the part of X′(0) that is not in `slopes`, of |X′| and of |X″| on the paths.
     most : scalar
@@ -84,7 +84,7 @@ def constant(value: Vector, most: Any) -> Jet:
 
 
 def _pairs(x: Jet, y: Jet) -> Iterable[tuple[Vector, Vector]]:
-    """Return the slopes of two jets together; none if one of them has none."""
+    """Return the slopes of two jets together; one, if one of them has one: constants have six."""
     return zip(x.slopes, y.slopes, strict=False)
 
 
@@ -209,6 +209,14 @@ def unit(x: Jet) -> Jet:
     return Jet(
         u, slopes, slack, turn, most * x.second + UNIT_SECOND_DERIVATIVE * (turn * turn), 1.0
     )
+
+
+def sharpened(x: Jet) -> Jet:
+    """Return a jet with |X′| ≤ |X′(0)| + |X″| as well; only on patches of one direction."""
+    if len(x.slopes) != 1:
+        return x
+    first = least(x.first, size(x.slopes[0]) + x.slack + x.second)
+    return replace(x, first=first, most=least(x.most, size(x.value) + first))
 
 
 def square_root(x: Jet) -> Jet:

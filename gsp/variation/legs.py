@@ -42,7 +42,8 @@ PATCH_LEG_SCALARS = 18
 class Patch:
     """The motion of the platform on the paths of a patch.
 
-    A patch of one direction may have no `turns`; its jets then have no slopes.
+    A patch of one direction may have that one slope: `half` is then p′ and `turns` has ω alone,
+    both at its start.
     """
 
     position: Vector
@@ -62,15 +63,15 @@ class Patch:
         return cls(lanes[:3], lanes[3:12], lanes[12:15], turns, *lanes[24:PATCH_SCALARS])
 
     def shifts(self) -> list[Vector]:
-        """Return the derivatives of p along the six coordinates; none of one direction."""
-        if not self.turns:
-            return []
+        """Return the derivatives of p along the six coordinates, or the one direction."""
+        if len(self.turns) == 1:
+            return [self.half]
         zero = [0.0, 0.0, 0.0]
         return [[self.half[i] if i == k else 0.0 for i in range(3)] for k in range(3)] + [zero] * 3
 
     def _turned(self, value: Vector) -> list[Vector]:
         turned = [cross(turn, value) for turn in self.turns]
-        return [[0.0, 0.0, 0.0]] * len(turned) + turned
+        return turned if len(turned) == 1 else [[0.0, 0.0, 0.0]] * 3 + turned
 
     def carried(self, arm: Vector, most: Any, tolerance: Any) -> Jet:
         """R b for a vector b of the platform, |b| ≤ most, that may be off by `tolerance`."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp.geometry.matrices import condition, determinant_sign, singular_values
 from gsp.geometry.vectors import Array
-from gsp.kinematics.driven import held, on_branches, scales_of_held
+from gsp.kinematics.driven.locked import held, on_branches, scales_of_held
 from gsp.kinematics.newton.centred import centred
 from gsp.model.design import Design
 

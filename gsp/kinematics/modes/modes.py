@@ -14,7 +14,7 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.matrices import condition, determinant_sign, singular_values
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
-from gsp.kinematics.driven import held, usable
+from gsp.kinematics.driven.locked import held, usable
 from gsp.kinematics.modes.census import confirmed_counts
 from gsp.kinematics.modes.certificates import certified
 from gsp.kinematics.modes.drives import of_drives

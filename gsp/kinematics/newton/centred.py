@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.arguments import LARGEST_NUMBER
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.centring import centred_pose, original_pose
 from gsp.geometry.vectors import Array, Mask, norm
@@ -80,11 +81,16 @@ class Centred:
         return np.asarray(joints / self.units)
 
     def possible(self, target: Array) -> Mask:
-        """Whether values are ones that the joints can have: distances ≥ 0, angles in (0, π)."""
+        """Whether values are ones that the joints can have: distances ≥ 0, angles in (0, π).
+
+        Those of drives at the base may be all numbers, up to the squares of extreme ones.
+        """
         with np.errstate(invalid="ignore"):
             least = np.where(self.design.angular, target > 0.0, target >= 0.0)
             most = target < np.where(self.design.angular, np.pi, np.inf)
-        return np.asarray((least & most).all(axis=-1))
+            moderate = np.abs(target) <= LARGEST_NUMBER**0.5
+        drives = np.array([row.constraint.driven for row in self.design.rows])
+        return np.asarray(np.where(drives, moderate, least & most).all(axis=-1))
 
     def pose_from(self, pose: Pose) -> Pose:
         """Return poses of the centred frames."""

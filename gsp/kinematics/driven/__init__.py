@@ -1,0 +1,1 @@
+"""Kinematics of designs with legs that are driven at the base."""
