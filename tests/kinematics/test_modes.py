@@ -20,6 +20,7 @@ from gsp.kinematics.modes.census import (
     text_of,
 )
 from gsp.kinematics.modes.certificates import certified
+from gsp.kinematics.modes.clearance import Clearances
 from gsp.kinematics.modes.ends import ends_of, moves, other_system, real_poses
 from gsp.kinematics.modes.equations import (
     Layout,
@@ -659,6 +660,65 @@ def test_platforms_that_lie_in_their_base_plane_have_no_more_solutions_than_othe
     real = int(modes.multiplicity.sum())
     if modes.status != "incomplete":
         assert (modes.n_complex + modes.n_singular - real) % 2 == 0
+
+
+def _uncontrolled(kind, seed):
+    """A platform on whose legs no, two or three twists work: base and platform anchors."""
+    rng = np.random.default_rng(seed)
+    if kind == "two lines":  # all legs meet both
+        lines = rng.normal(size=(2, 2, 3))
+        first, second = (a + rng.normal(size=(6, 1)) * b for a, b in lines)
+    elif kind == "point":  # all legs meet in it
+        first = np.tile(rng.normal(size=3), (6, 1))
+        second = first + rng.normal(size=(6, 3))
+    else:  # all legs are in a plane
+        first, second = np.pad(rng.normal(size=(2, 6, 2)), ((0, 0), (0, 0), (0, 1)))
+    along, before = second - first, rng.uniform(0.4, 1.0, (6, 1))
+    return first - before * along, first + rng.uniform(0.6, 1.6, (6, 1)) * along
+
+
+@pytest.mark.parametrize("seed", range(count(2, 40)))
+@pytest.mark.parametrize("kind", ["two lines", "point", "plane"])
+def test_modes_beside_poses_with_several_uncontrolled_motions(kind, seed):
+    """Four to eight solutions are 1e-4 apart there, and each path comes to its own."""
+    base, top = _uncontrolled(kind, seed)
+    design = gsp.Design(SIX, base, top)
+    values = np.linalg.svd(design.at(gsp.Pose(np.zeros(3))).jacobian, compute_uv=False)
+    assert (values < 1e-10).sum() >= 2
+    rng = np.random.default_rng([seed, 1])
+    pose = gsp.Pose(np.zeros(3)).moved(1e-4 * rng.normal(size=6))
+    modes = gsp.assembly_modes(design, design.at(pose).joints, certify=True)
+    assert (modes.status, modes.n_complex, modes.n_paths) == ("found", 40, 40)
+    assert apart(modes, pose).min() < 1e-7
+    assert modes.residual.max() < 1e-12
+    assert len(modes.side) % 2 == 0
+
+
+def test_a_solution_is_alone_within_its_clearance():
+    """Beside a fold the two solutions are a multiple of it apart, and rounding moves them less."""
+    design, joints, normal_to_fold = _fold(0)
+    system, start = centred(design), start_of(tuple(SIX), 40)
+    for change in (1e-11, -1e-11, 1e-9, -1e-9):
+        values = system.joints_from(joints + change * normal_to_fold)
+        target = np.ascontiguousarray(parameters_from(system, values))
+        poses = ends_of(start, target, 40).poses
+        clear = Clearances.of(start.layout, target, poses)
+        assert clear.regular.all()
+        weak = np.flatnonzero(np.isfinite(clear.distances))
+        assert weak.size >= 2
+        for i in weak:
+            signs = np.sign((poses[:, :4] @ poses[i, :4].conj()).real)[:, None]
+            apart_ = np.abs(np.hstack((signs * poses[:, :4], poses[:, 4:])) - poses[i]).max(axis=1)
+            nearest = np.delete(apart_, i).min()
+            assert clear.rounding[i] < 0.1 * clear.distances[i]
+            assert clear.distances[i] * clear.sizes[i] < nearest
+
+
+def test_other_general_systems_differ_from_the_first():
+    start = start_of(tuple(SIX), None)
+    systems = [start, *(other_system(start, number) for number in range(3))]
+    first = [system.parameters[0, 0] for system in systems]
+    assert len(set(first)) == 4
 
 
 def test_an_odd_number_of_solutions_that_are_not_real_is_incomplete(monkeypatch):

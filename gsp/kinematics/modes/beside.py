@@ -17,24 +17,26 @@ from gsp.geometry.vectors import Array
 from gsp.kinematics.modes.equations import (
     Complex,
     Layout,
-    coordinates,
     extended_residuals,
     linear,
 )
 
-# Share of the smallest singular value of a solution that may have others beside it, of equations
-# and unknowns in their own scales; and the least share of the second smallest one.
-BESIDE_SHARE, SECOND_SHARE = 1e-5, 1e-5
+# Least share of the second smallest singular value where one motion only is hardly controlled.
+SECOND_SHARE = 1e-5
 # Solutions nearer to each other than this share of the size of the pose are one multiple solution,
 # as the rounding of joint values of a singular pose has this effect.
 LEAST_GAP = 3e-7
-# Radius of the circle on which r is sampled, as a share of the size of the pose, the numbers of
-# samples and of coefficients that count, and the share of the radius in which zeros are taken.
-RADIUS, SAMPLES, DEGREE, INNER = 4e-3, 32, 8, 0.25
-# Distance from a cluster that is not told apart within which solutions belong to it.
-CLUSTER_REACH = 1e-4
+# Radii of the circles on which r is sampled, as shares of the size of the pose, the numbers of
+# samples and of coefficients that count, and the share of the radius in which zeros are taken;
+# they are all within another share of it if there are no zeros between.
+RADII, SAMPLES, DEGREE, INNER, OUTER = (4e-3, 4e-4, 4e-5), 32, 8, 0.25, 0.9
 # Coefficients beyond the last that counts, as a share of the largest one, at most.
 TAIL_SHARE = 1e-6
+# The last coefficients, which rounding makes; zeros are the same within this many times by how much
+# these and the coefficients beyond move them.
+NOISE_TERMS, ERROR_FACTOR = 4, 10.0
+# What is left of r at a zero at most: a share of the largest coefficient, and times its rounding.
+REST_SHARE, REST_FACTOR = 1e-8, 100.0
 # Newton steps to the middle and along the curve, and shares of singular values that are left out.
 MIDDLE_STEPS, ALONG_STEPS, MIDDLE_RCOND = 6, 8, 1e-4
 # A step along the curve after which the next one is that of rounding, as a share of the size.
@@ -63,6 +65,22 @@ class Beside(NamedTuple):
     numbers: NDArray[np.int64]
     middle: Complex
     reach: float
+
+    def has(self, poses: Complex) -> NDArray[np.bool_]:
+        """Return which of other poses (n, 7) are within reach."""
+        return within(poses, self.middle, self.reach)
+
+
+def within(poses: Complex, middle: Complex, reach: float) -> NDArray[np.bool_]:
+    """Return whether poses (n, 7), or those with −x, are within a distance of a pose, (n,)."""
+    signs = np.where((poses[:, :4] @ middle[:4].conj()).real < 0.0, -1.0, 1.0)[:, None]
+    apart = np.hstack((signs * poses[:, :4], poses[:, 4:])) - middle
+    return np.asarray(np.abs(apart).max(axis=1, initial=0.0) < reach)
+
+
+def size(pose: Complex) -> float:
+    """Return the largest part of a pose (7,)."""
+    return float(np.abs(pose).max())
 
 
 class Curve(NamedTuple):
@@ -122,48 +140,62 @@ class Curve(NamedTuple):
                 return None
             poses, rest = poses - step[:, :7], rest - step[:, 7]
             before, last = last, float(np.abs(step[:, :7]).max())
-            if before < SETTLED_STEP * _size(self.middle):  # this step was that of rounding
+            if before < SETTLED_STEP * size(self.middle):  # this step was that of rounding
                 break
-        return (poses, rest) if last < LEAST_GAP * 1e-3 * _size(self.middle) else None
+        return (poses, rest) if last < LEAST_GAP * 1e-3 * size(self.middle) else None
 
 
 def beside(layout: Layout, parameters: Complex, pose: Complex) -> Beside | None:
     """Return the solutions beside a pose (7,).
 
-    None if there is none, or if more than one motion is hardly controlled there.
+    None if there is none, or if more than one motion is hardly controlled there. Smaller circles
+    are tried where r cannot be told from its values on a larger one.
     """
     curve = _curve(layout, parameters, pose)
-    if curve is None or curve.single(INNER * RADIUS * _size(curve.middle)):
+    if curve is None:
         return None
-    radius = RADIUS * _size(curve.middle)
+    for share in RADII:
+        radius = share * size(curve.middle)
+        found = None if curve.single(INNER * radius) else _zeros(curve, radius)
+        if found is not None:
+            return found
+    return None
+
+
+def _zeros(curve: Curve, radius: float) -> Beside | None:
+    """Return the solutions on a curve within a share of a radius; None if they are not told."""
     circle = radius * np.exp(2j * np.pi * np.arange(SAMPLES) / SAMPLES)
     found = curve.at(circle)
     if found is None:
         return None
     terms = np.fft.fft(found[1]) / SAMPLES  # coefficients times powers of the radius
     largest = np.abs(terms[1 : DEGREE + 1]).max()
-    if not np.abs(terms[DEGREE + 1 : SAMPLES // 2]).max() < TAIL_SHARE * largest:
+    rest = np.abs(terms[DEGREE + 1 : SAMPLES // 2])
+    if not rest.max() < TAIL_SHARE * largest:
         return None
-    terms = terms[DEGREE::-1]
-    zeros = np.roots(terms.real if curve.real else terms) * radius  # real ones, or conjugates
-    steps, numbers = _merged(zeros[np.abs(zeros) < INNER * radius], LEAST_GAP * _size(curve.middle))
+    series = np.poly1d(terms[DEGREE::-1].real if curve.real else terms[DEGREE::-1])
+    zeros = series.roots  # real ones, or conjugates
+    alone = not ((np.abs(zeros) > INNER) & (np.abs(zeros) < 1.0)).any()
+    zeros = zeros[np.abs(zeros) < INNER]
+    noise = rest[-NOISE_TERMS:].max()
+    error = noise + rest.max() * np.abs(zeros) ** (DEGREE + 1)
+    with np.errstate(divide="ignore"):
+        gaps = radius * ERROR_FACTOR * error / np.abs(series.deriv()(zeros))
+    steps, numbers = _merged(radius * zeros, np.fmax(gaps, LEAST_GAP * size(curve.middle)))
     if not len(steps):
         return None
     ends = curve.at(steps.astype(np.complex128))
-    if ends is None:
+    if ends is None or np.abs(ends[1]).max() > REST_SHARE * largest + REST_FACTOR * noise:
         return None
     poses = np.where((steps.imag == 0.0)[:, None] & curve.real, ends[0].real, ends[0])
-    return Beside(poses.astype(np.complex128), numbers, curve.middle, INNER * radius)
-
-
-def _size(pose: Complex) -> float:
-    return float(np.abs(pose).max())
+    reach = radius * (OUTER if alone else INNER)
+    return Beside(poses.astype(np.complex128), numbers, curve.middle, reach)
 
 
 def _curve(layout: Layout, parameters: Complex, pose: Complex) -> Curve | None:
     """Return the curve through the middle beside a pose; real if that is nearly so."""
     middle = pose.copy()
-    if np.abs(middle.imag).max() < REAL_MIDDLE * _size(middle):
+    if np.abs(middle.imag).max() < REAL_MIDDLE * size(middle):
         middle = middle.real.astype(np.complex128)
     for _ in range(MIDDLE_STEPS):
         error, slopes = linear(layout, parameters, middle[None])
@@ -180,102 +212,17 @@ def _curve(layout: Layout, parameters: Complex, pose: Complex) -> Curve | None:
     return Curve(layout, parameters, middle, *np.stack((along, across)).astype(np.complex128))
 
 
-def _merged(zeros: Complex, gap: float) -> tuple[Complex, NDArray[np.int64]]:
-    """Return zeros, those nearer than a gap as their mean, and how many each stands for."""
-    waiting, steps, numbers = list(zeros), [], []
+def _merged(zeros: Complex, gaps: Array) -> tuple[Complex, NDArray[np.int64]]:
+    """Return zeros, those nearer than their gaps as their mean, and how many each stands for."""
+    waiting, steps, numbers = list(range(len(zeros))), [], []
     while waiting:
-        first = waiting.pop(0)
-        near = [x for x in waiting if abs(x - first) < gap]
-        waiting = [x for x in waiting if abs(x - first) >= gap]
-        group = np.array([first, *near])
-        pair = abs(group.mean().imag) < gap and len(group) > 1
-        steps.append(group.mean().real if pair else group.mean())
+        group = [waiting.pop(0)]
+        for i in group:  # grows
+            near = [j for j in waiting if abs(zeros[i] - zeros[j]) < max(gaps[i], gaps[j])]
+            waiting = [j for j in waiting if j not in near]
+            group += near
+        mean = zeros[group].mean()
+        pair = abs(mean.imag) < gaps[group].max() and len(group) > 1
+        steps.append(mean.real if pair else mean)
         numbers.append(len(group))
     return np.array(steps, dtype=np.complex128), np.array(numbers, dtype=np.int64)
-
-
-class Apart(NamedTuple):
-    """Solutions, once those beside each other are told apart.
-
-    Attributes
-    ----------
-    regular : (n, 7) complex array
-    beside : (n,) bool array
-        Which of them were told apart; of these the real ones have no imaginary parts.
-    clusters : (m, 7) complex array
-        Multiple ones.
-    numbers : (m,) int array
-    """
-
-    regular: Complex
-    beside: NDArray[np.bool_]
-    clusters: Complex
-    numbers: NDArray[np.int64]
-
-
-def told_apart(
-    layout: Layout,
-    parameters: Complex,
-    regular: Complex,
-    shares: Array,
-    last: Complex,
-    clusters: Complex,
-    numbers: NDArray[np.int64],
-) -> Apart:
-    """Return solutions with those beside nearly singular ones in the place of these.
-
-    A cluster that is not told apart takes the solutions beside it: they are the same multiple one,
-    at which as many paths ended as at these from the general system of the cluster.
-
-    Parameters
-    ----------
-    layout : Layout
-    parameters : (6, 13) complex array
-    regular : (n, 7) complex array
-    shares : (n,) array [1]
-        Their smallest singular values, of the largest ones.
-    last : (k, 7) complex array
-        Those of them that were found from the general system of the clusters.
-    clusters : (m, 7) complex array
-    numbers : (m,) int array
-        How many paths ended at each.
-    """
-    weak = shares < BESIDE_SHARE
-    if not len(clusters) and not weak.any():
-        return Apart(regular, np.zeros(len(regular), dtype=bool), clusters, numbers)
-    centres = np.vstack((clusters, regular[weak]))
-    found: list[Complex] = []
-    multiple: list[tuple[Complex, int]] = []
-    open_ = np.ones(len(centres), dtype=bool)
-    dropped = np.zeros(len(regular), dtype=bool)
-    for i, centre in enumerate(centres):
-        if not open_[i]:
-            continue
-        here = beside(layout, parameters, centre)
-        if here is not None:
-            open_ &= ~_within(centres, here.middle, here.reach)
-            dropped |= _within(regular, here.middle, here.reach)
-            for pose, number in zip(here.poses, here.numbers, strict=True):
-                if number == 1:
-                    found.append(pose)
-                else:
-                    multiple.append((pose, int(number)))
-        elif i < len(clusters):
-            reach = CLUSTER_REACH * _size(centre)
-            open_ &= ~_within(centres, centre, reach)
-            dropped |= _within(regular, centre, reach)
-            multiple.append((centre, int(numbers[i] + _within(last, centre, reach).sum())))
-    ends = np.array(found, dtype=np.complex128).reshape(-1, 7)
-    both = np.vstack((regular[~dropped], ends))
-    return Apart(
-        both,
-        np.arange(len(both)) >= len(both) - len(ends),
-        np.array([pose for pose, _ in multiple], dtype=np.complex128).reshape(-1, 7),
-        np.array([number for _, number in multiple], dtype=np.int64),
-    )
-
-
-def _within(poses: Complex, middle: Complex, reach: float) -> NDArray[np.bool_]:
-    """Whether poses (n, 7) are within a distance of a pose, by rotations and positions."""
-    apart = np.abs(coordinates(poses) - coordinates(middle[None])).max(axis=1, initial=0.0)
-    return np.asarray(apart < reach)

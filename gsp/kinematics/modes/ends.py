@@ -9,17 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.kinematics.modes.beside import told_apart
+from gsp.kinematics.modes.clearance import Clearances
+from gsp.kinematics.modes.clusters import clustered, told_apart
 from gsp.kinematics.modes.equations import (
+    SAME_POSE_SHARE,
     Complex,
     Layout,
     coordinates,
     distinct,
     linear,
     normal,
+    refined,
 )
 from gsp.kinematics.modes.starts import (
     FIRST_CORRECTION,
+    LAST_CORRECTION,
     PATH_STEPS,
     RETRACED_CORRECTION,
     RETRACED_PATH_STEPS,
@@ -41,14 +45,12 @@ LEFT_FACTORS = (64.0, 16.0, 4.0)
 LEAST_LEFT = 1e-6
 LEAST_POWER = 0.1
 STEADY_SHARE = 0.7
-# Smallest singular value of a regular solution as a share of the largest one, of equations and
-# unknowns in their own scales; and of a pose beside a multiple solution, which is reached with
-# about half of the digits.
-REGULAR_SHARE, NEARLY_REGULAR_SHARE = 1e-9, 1e-4
-# Distance below which two multiple solutions are one.
-SAME_MULTIPLE = 1e-2
-# Other general systems from which paths are followed if those of the first are lost or diverge.
-OTHER_SYSTEMS = 4
+# Smallest singular value of a pose beside a multiple solution, which is reached with about half of
+# the digits, as a share of the largest one.
+NEARLY_REGULAR_SHARE = 1e-4
+# Other general systems from which paths are followed if those of the first are lost or diverge, and
+# how many random ones are tried for each.
+OTHER_SYSTEMS, OTHER_ATTEMPTS, OTHER_SEED = 6, 4, 40
 # Step along a possible motion, and Newton steps back to the solutions.
 MOTION_STEP, RETURN_STEPS = 1e-2, 20
 # Residual below which a singular pose is a solution.
@@ -93,10 +95,16 @@ class Ends:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Route:
-    """Ends of all paths from one general system: regular solutions, singular poses, diverged."""
+    """Ends of all paths from one general system.
+
+    Regular solutions with their clearances, singular poses, shares of the line that were left at
+    these, and how many diverged.
+    """
 
     regular: Complex
+    clear: Clearances
     singular: Complex
+    left: Array
     diverged: int
 
 
@@ -113,11 +121,11 @@ def ends_of(start: Start, parameters: Complex, expected: int | None = None) -> E
     layout, total = start.layout, max(len(start.poses), expected or 0)
     routes = [_route(start, parameters)]
     ends = _together(layout, parameters, routes, total)
-    for seed in range(OTHER_SYSTEMS):
+    for number in range(OTHER_SYSTEMS):
         settled = not ends.lost and (len(routes) > 1 or not ends.at_infinity)
         if settled or ends.moving:
             break
-        other = other_system(start, seed)
+        other = other_system(start, number)
         if other is not None:
             routes.append(_route(other, parameters))
             ends = _together(layout, parameters, routes, total)
@@ -125,13 +133,17 @@ def ends_of(start: Start, parameters: Complex, expected: int | None = None) -> E
 
 
 @lru_cache(maxsize=128)
-def other_system(start: Start, seed: int) -> Start | None:
-    """Return another general system with as many solutions; None if paths to it were lost."""
-    parameters = start.layout.random(np.random.default_rng(seed))
-    found = followed(start.layout, start.parameters, parameters, start.poses)
-    if not found.arrived.all() or len(distinct(found.poses)) < len(start.poses):
-        return None
-    return replace(start, parameters=parameters, poses=found.poses)
+def other_system(start: Start, number: int) -> Start | None:
+    """Return another general system with as many solutions; None if paths to all tried were lost.
+
+    The systems of two numbers differ.
+    """
+    for attempt in range(OTHER_ATTEMPTS):
+        parameters = start.layout.random(np.random.default_rng([OTHER_SEED, number, attempt]))
+        found = followed(start.layout, start.parameters, parameters, start.poses)
+        if found.arrived.all() and len(distinct(found.poses)) == len(start.poses):
+            return replace(start, parameters=parameters, poses=found.poses)
+    return None
 
 
 def _route(start: Start, parameters: Complex) -> _Route:
@@ -140,29 +152,36 @@ def _route(start: Start, parameters: Complex) -> _Route:
         layout, start.parameters, parameters, start.poses, tight=FIRST_CORRECTION, most=PATH_STEPS
     )
     diverged = _diverged(start, parameters, found)
-    doubtful = ~found.arrived & ~diverged | clashing(found)
+    doubtful = ~found.arrived & ~diverged
+    clear = Clearances.of(layout, parameters, found.poses)
+    doubtful |= _clashing(found, clear)
     if doubtful.any():
         _again(start, parameters, found, np.flatnonzero(doubtful))
         diverged |= _diverged(start, parameters, found)
+        clear = Clearances.of(layout, parameters, found.poses)
+    regular = found.arrived & clear.regular
     left = found.numbers[:, 1]
-    regular = found.arrived & is_regular(layout, parameters, found.poses)
     near = ~regular & ~diverged & (found.arrived | (left < NEAR_END))
     near[near] = _singular_beside(layout, parameters, found.poses[near])
-    poses = found.poses[regular]
+    places = np.flatnonzero(regular)
+    places = places[_each_once(found.poses[places], clear[places])]
     return _Route(
-        regular=poses[distinct(poses)],
+        regular=found.poses[places],
+        clear=clear[places],
         singular=found.poses[near],
+        left=left[near],
         diverged=int(diverged.sum()),
     )
 
 
 def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: int) -> Ends:
     """Return the solutions of routes: their regular ones, and the singular ones of the last."""
-    regular = np.vstack([route.regular for route in routes])
-    regular = regular[distinct(regular)]
-    shares = regular_shares(layout, parameters, regular)
-    last = routes[-1].regular
-    found = told_apart(layout, parameters, regular, shares, last, *_clusters(routes[-1].singular))
+    last = routes[-1]
+    regular = np.vstack([route.regular for route in reversed(routes)])
+    clear = last.clear if len(routes) == 1 else Clearances.of(layout, parameters, regular)
+    once = _each_once(regular, clear)
+    regular, others = regular[once], once >= len(last.regular)
+    found = told_apart(layout, parameters, regular, others, *clustered(last.singular, last.left))
     regular, clusters, numbers = found.regular, found.clusters, found.numbers
     known = len(regular) + int(numbers.sum())
     infinite = max(min(max(route.diverged for route in routes), total - known), 0)
@@ -206,27 +225,6 @@ def _grows(start: Start, parameters: Complex, pose: Complex, left: float) -> boo
     return bool(second > LEAST_POWER and second > STEADY_SHARE * first)
 
 
-def is_regular(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
-    """Whether the derivatives at poses (m, 7) have full rank, in the scales of rows and columns."""
-    return np.asarray(regular_shares(layout, parameters, poses) > REGULAR_SHARE)
-
-
-def regular_shares(layout: Layout, parameters: Complex, poses: Complex) -> Array:
-    """Return the smallest singular value at poses (m, 7) as a share of the largest one, (m,).
-
-    Of derivatives in the scales of rows and columns; 0 where these are not defined.
-    """
-    slopes = linear(layout, parameters, poses)[1]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        for axis in (2, 1, 2):
-            slopes = slopes / np.linalg.norm(slopes, axis=axis, keepdims=True)
-    defined = np.asarray(np.isfinite(slopes).all(axis=(1, 2)))
-    values = np.linalg.svd(slopes[defined], compute_uv=False)
-    shares = np.zeros(len(poses))
-    shares[defined] = values[:, -1] / values[:, 0]
-    return shares
-
-
 def _singular_beside(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
     """Whether there are singular solutions beside poses (m, 7)."""
     if not len(poses):
@@ -237,15 +235,20 @@ def _singular_beside(layout: Layout, parameters: Complex, poses: Complex) -> NDA
     )
 
 
-def clashing(found: Paths) -> NDArray[np.bool_]:
+def _each_once(poses: Complex, clear: Clearances) -> NDArray[np.int64]:
+    """Return the places of solutions (m, 7) that differ from all before them, ascending."""
+    return distinct(poses, clear.within(SAME_POSE_SHARE))
+
+
+def _clashing(found: Paths, clear: Clearances) -> NDArray[np.bool_]:
     """Whether a path came to the solution of another one, (n,)."""
     same, arrived = np.zeros(len(found.poses), dtype=bool), np.flatnonzero(found.arrived)
-    kept = distinct(found.poses[arrived])
+    poses, reach = found.poses[arrived], clear[arrived].within(SAME_POSE_SHARE)
+    kept = distinct(poses, reach)
     if len(kept) < len(arrived):
-        points = coordinates(found.poses[arrived])
+        points = coordinates(poses)
         for i in np.setdiff1d(np.arange(len(arrived)), kept):
-            apart = np.abs(points - points[i]).max(axis=1)
-            same[arrived[apart < 1e-5 * np.abs(points[i]).max()]] = True
+            same[arrived] |= np.abs(points - points[i]).max(axis=1) < 10.0 * reach[i]
     return same
 
 
@@ -261,20 +264,6 @@ def _again(start: Start, parameters: Complex, found: Paths, paths: NDArray[np.in
     )
     found.poses[paths], found.ends[paths] = second.poses, second.ends
     found.numbers[paths] = second.numbers
-
-
-def _clusters(poses: Complex) -> tuple[Complex, NDArray[np.int64]]:
-    """Return the first pose of each cluster, and the numbers of poses."""
-    points, waiting = coordinates(poses), np.ones(len(poses), dtype=bool)
-    kept, numbers = [], []
-    for i in range(len(poses)):
-        if waiting[i]:
-            apart = np.abs(points - points[i]).max(axis=1)
-            near = waiting & (apart < SAME_MULTIPLE * max(1.0, np.abs(points[i]).max()))
-            waiting[near] = False
-            kept.append(poses[i])
-            numbers.append(near.sum())
-    return np.array(kept).reshape(-1, 7), np.array(numbers, dtype=np.int64)
 
 
 def returned(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex, Array, Array]:
@@ -331,25 +320,38 @@ def _along(kernel: Complex) -> Complex:
     return np.asarray(MOTION_STEP * mixed / np.linalg.norm(mixed))
 
 
+def _newton(
+    layout: Layout, parameters: Complex, poses: Complex, clear: Clearances
+) -> tuple[Complex, NDArray[np.bool_]]:
+    """Return the ends of Newton's method from poses (m, 7), and whether it converged, (m,)."""
+    found = follow(layout, parameters, parameters, poses, tight=FIRST_CORRECTION, most=PATH_STEPS)
+    ends, arrived = found.poses, found.arrived.copy()
+    weak = np.isfinite(clear.distances)
+    if weak.any():
+        ends[weak], last = refined(layout, parameters, poses[weak])
+        arrived[weak] = last < LAST_CORRECTION
+    return ends, arrived
+
+
 def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, NDArray[np.int64]]:
     """Return the real solutions, (m, 7), refined, and their places among the solutions.
 
-    Newton's method in real numbers decides of regular solutions, and how they were told apart of
-    those beside each other.
+    Regular ones are real if they are nearer to the real poses than to other solutions, and Newton's
+    method in real numbers converges beside them; those beside each other as they were told apart.
     """
-    size = np.abs(ends.poses).max(axis=1, initial=1.0, keepdims=True)
-    small = np.where(ends.singular, REAL_MOVE_TOLERANCE, IMAGINARY_TOLERANCE)
-    imaginary = (np.abs(ends.poses.imag) / size).max(axis=1, initial=0.0)
-    places = np.flatnonzero(np.where(ends.beside, imaginary == 0.0, imaginary < small))
+    imaginary, size = (np.abs(z).max(axis=1, initial=0.0) for z in (ends.poses.imag, ends.poses))
+    places = np.flatnonzero(imaginary < REAL_MOVE_TOLERANCE * size)
+    clear = Clearances.of(layout, parameters, ends.poses[places])
+    small = np.where(ends.beside[places], 0.0, clear.within(IMAGINARY_TOLERANCE))
+    real = ends.singular[places] | (imaginary[places] <= small)
+    places, clear = places[real], clear[real]
     poses, singular = ends.poses[places].real.astype(np.complex128), ends.singular[places]
     kept = ends.beside[places]
     free = ~singular & ~kept
-    refined = follow(
-        layout, parameters, parameters, poses[free], tight=FIRST_CORRECTION, most=PATH_STEPS
-    )
-    moved = np.abs(refined.poses - poses[free]).max(axis=1, initial=0.0)
-    near = moved < REAL_MOVE_TOLERANCE * size[places][free, 0]
-    kept[free], poses[free] = near & refined.arrived, refined.poses
+    refined, arrived = _newton(layout, parameters, poses[free], clear[free])
+    moved = np.abs(refined - poses[free]).max(axis=1, initial=0.0)
+    near = moved < clear[free].within(REAL_MOVE_TOLERANCE)
+    kept[free], poses[free] = near & arrived, refined
     if singular.any():
         poses[singular], error, _ = returned(layout, parameters, poses[singular])
         flat = np.abs(poses[singular].imag).max(axis=1) < IMAGINARY_TOLERANCE

@@ -172,13 +172,18 @@ def coordinates(poses: Complex) -> Complex:
     return np.hstack((rotations(poses).reshape(-1, 9), poses[:, 4:]))
 
 
-def distinct(poses: Complex) -> NDArray[np.int64]:
-    """Return the places of poses (m, 7) that differ from all before them, ascending."""
+def distinct(poses: Complex, reach: Array | None = None) -> NDArray[np.int64]:
+    """Return the places of poses (m, 7) that differ from all before them, ascending.
+
+    Poses are the same within a distance of rotations and positions, (m,); without one, within
+    `SAME_POSE_SHARE` of their size.
+    """
     from scipy.spatial import cKDTree
 
     points = coordinates(poses)
     plane = np.hstack((points.real, points.imag))
-    reach = SAME_POSE_SHARE * np.sqrt((plane**2).sum(axis=1))
+    if reach is None:
+        reach = SAME_POSE_SHARE * np.sqrt((plane**2).sum(axis=1))
     if _apart_on_a_line(plane, reach):
         return np.arange(len(poses))
     near = cKDTree(plane).query_ball_point(plane, reach)

@@ -88,8 +88,9 @@ class AssemblyModes(ReadOnly):
         "found": all modes, as ends of the `n_paths` paths; of a mechanism whose number is not
         confirmed in `catalogue/root_counts.csv` as many as were known. "multiple": the same, some
         of them multiple. These are singular poses, and found to about half of the digits.
-        "moving": the joint values allow a motion, and there are poses besides those listed.
-        Where two or more motions are hardly controlled, other modes near these may be missing.
+        Where two or more motions are hardly controlled, modes within about 1e-5 of the size of a
+        multiple one may be missing. "moving": the joint values allow a motion, and there are poses
+        besides those listed.
         "incomplete": some paths were lost, an odd number of solutions is not real, or a regular
         mode has a residual above 1e-10, and modes may be missing or wrong; also if a distance is
         more than 1e6 times `design.rms_radius`. "undefined": joint values that are NaN or none that

@@ -25,12 +25,15 @@ D1, D2, D3, D4, A1 = (NUMBER[name] for name in ("D1", "D2", "D3", "D4", "A1"))
 ARRIVED, DIVERGED, STUCK = 0, 1, 2
 # First and longest step, as shares of the line; the shortest as a share of what is left of it; and
 # what is left where a path is abandoned: its end is a multiple solution, or is on a curve of them.
-FIRST_PATH_STEP, LONGEST_PATH_STEP, SHORTEST_STEP_SHARE, GIVEN_UP_SHARE = 0.02, 0.25, 1e-9, 1e-12
+FIRST_PATH_STEP, LONGEST_PATH_STEP, SHORTEST_STEP_SHARE, GIVEN_UP_SHARE = 0.02, 0.25, 1e-9, 1e-15
 # Growth of a step at most, and what a rejected one is multiplied by.
 PATH_STEP_GROWTH, PATH_STEP_CUT = 2.0, 0.4
 # A step is rejected if the first correction is this many times what was aimed at, or the second
-# one more than this share of the first.
-CORRECTION_EXCESS, CORRECTION_DECREASE, CORRECTION_ROUNDING = 10.0, 0.1, 1e-6
+# one more than this share of the first and than rounding explains. That is a share of the pose:
+# one divided by the share of the smallest pivot, and one times the square of its size, between
+# bounds. Where solutions are near to each other, this keeps a path to its own.
+CORRECTION_EXCESS, CORRECTION_DECREASE = 10.0, 0.1
+PIVOT_ROUNDING, SQUARES_ROUNDING, LEAST_ROUNDING, LARGEST_ROUNDING = 1e-14, 1e-13, 1e-9, 1e-6
 # Size of a pose, quaternion and position together, beyond which its path diverges. Paths pass near
 # poles on their way: positions of 1e5 occur in every fifth system of six D1 rows.
 DIVERGED_SIZE = 1e8
@@ -156,7 +159,11 @@ def _square(c):  # type: ignore[no-untyped-def]
 
 @njit(error_model="numpy", nogil=True)
 def solve(m):  # type: ignore[no-untyped-def]
-    """Replace the last two columns of m (6, 8) by the solutions with the first six; row pivots."""
+    """Replace the last two columns of m (6, 8) by the solutions with the first six; row pivots.
+
+    Returns the smallest pivot as a share of the largest one, 0 if the rows are dependent.
+    """
+    least, most = np.inf, 0.0
     for j in range(6):
         best, pivot = _square(m[j, j]), j
         for i in range(j + 1, 6):
@@ -164,7 +171,8 @@ def solve(m):  # type: ignore[no-untyped-def]
             if size > best:
                 best, pivot = size, i
         if not best > 0.0:
-            return False
+            return 0.0
+        least, most = min(least, best), max(most, best)
         if pivot != j:
             for c in range(j, 8):
                 m[j, c], m[pivot, c] = m[pivot, c], m[j, c]
@@ -179,7 +187,7 @@ def solve(m):  # type: ignore[no-untyped-def]
         for i in range(j + 1, 6):
             m[j, 6] -= m[j, i] * m[i, 6]
             m[j, 7] -= m[j, i] * m[i, 7]
-    return True
+    return np.sqrt(least / most)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -290,7 +298,7 @@ def _tracker(digest: int) -> Callable[..., None]:
                         here[i, c] = end[i, c] - after * rates[i, c]
                 scale = np.sqrt(square_sum(z1))
                 linearise(kinds, here, rates, new, r, m)
-                good = solve(m)
+                good = solve(m) > 0.0
                 velocity(new, m, 6, dz)
                 first = np.sqrt(square_sum(dz)) / scale
                 good &= first < CORRECTION_EXCESS * tight
@@ -299,11 +307,13 @@ def _tracker(digest: int) -> Callable[..., None]:
                         new[c] += dz[c]
                     normalise(new)
                     linearise(kinds, here, rates, new, r, m)
-                    good = solve(m)
+                    share = solve(m)
                     velocity(new, m, 6, dz)
                     velocity(new, m, 7, dv)
                     second = np.sqrt(square_sum(dz)) / scale
-                    good &= second < CORRECTION_DECREASE * first + CORRECTION_ROUNDING
+                    rounding = PIVOT_ROUNDING / share + SQUARES_ROUNDING * scale * scale
+                    rounding = min(LEAST_ROUNDING + rounding, LARGEST_ROUNDING)
+                    good = second < CORRECTION_DECREASE * first + rounding
                 if not good:
                     h *= PATH_STEP_CUT
                     if h < SHORTEST_STEP_SHARE * left or after == left:
@@ -360,3 +370,26 @@ track = njit(
     nogil=True,
     cache=True,
 )(_tracker(digest_of_code()))
+
+
+@njit(
+    types.void(
+        types.Array(types.int64, 1, "C", readonly=True),
+        _PARAMETERS,
+        types.Array(types.complex128, 2, "C", readonly=True),
+        types.complex128[:, :, ::1],
+    ),
+    error_model="numpy",
+    nogil=True,
+    cache=True,
+)
+def derivatives(kinds, parameters, poses, out):  # type: ignore[no-untyped-def]
+    """Fill `out` (n, 6, 6) with ∂F/∂v and ∂F/∂ω of the equations at poses (n, 7)."""
+    rates, r, m = (
+        np.zeros_like(parameters),
+        np.empty(9, np.complex128),
+        np.empty((6, 8), np.complex128),
+    )
+    for pose in range(len(poses)):
+        linearise(kinds, parameters, rates, poses[pose], r, m)
+        out[pose] = m[:, :6]
