@@ -158,7 +158,9 @@ def _check(
         wanted = "six numbers, not all zero, the largest between 1e-100 and 1e100"
         raise InvalidInput(expected("direction", wanted, twist.tolist()))
     given = design.strokes if strokes is None else strokes
-    return pose, twist, open_strokes(check_strokes(given, design.signed), n)
+    bounds = open_strokes(check_strokes(given, design.signed), n)
+    cranks = design.angular & [row.constraint.driven for row in design.rows]
+    return pose, twist, np.where(cranks[:, None], crank_bounds(bounds), bounds)
 
 
 class _March:
@@ -173,9 +175,6 @@ class _March:
         rows = design.design.rows
         self.drives = np.array([row.constraint.driven for row in rows])
         self.cosines = design.design.angular & ~self.drives
-        bounds = np.where(
-            (design.design.angular & self.drives)[:, None], crank_bounds(bounds), bounds
-        )
         low, high = bounds[:, 0], bounds[:, 1]
         self.names = np.arange(12).reshape(6, 2)
         # Angles are bounded by their cosines. A distance that may be 0 may change its sign.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp import Crank, Design, Pose, Slider
+from gsp import Crank, Pose
 from gsp.kinematics.driven.reach import crank_bounds, reaches
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import centred
@@ -39,31 +39,19 @@ def test_a_stroke_of_a_slider_is_the_closed_form():
     assert back.limit == f"d4 = {strokes[3, 0]:.6g}"
 
 
-def circling(strokes=None):
-    """One crank about z among sliders along z: a platform that moves on a circle turns it."""
-    legs = [Crank(arm=[0.5, 0, 0], rod=1.0), *[Slider(rod=2.0)] * 5]
-    up = [0.0, 0.0, 1.0]
-    base, platform = driven.BASE.copy(), driven.PLATFORM.copy()
-    base[0], platform[0] = [0.3, 0.2, 0.0], [0.9, -0.1, -1.0]
-    return Design(legs, base, platform, [up] * 6, home=Pose([0.3, 0.0, 1.5]), strokes=strokes)
-
-
 def test_the_angle_of_a_crank_ends_at_a_half_turn_if_it_has_a_bound():
-    """Where the scan of joint values passes from π to −π."""
-    free = circling()
-    start = free.at(free.home).joints[0]
-    twist = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0 if start < 0 else 1.0])
-    bound = np.full((6, 2), np.nan)
-    bound[0] = np.sort([np.sign(start) * (abs(start) - 0.1), -np.sign(start) * 9.0])
-    bound[0] = [-9.0, start + 0.1] if start < 0 else [start - 0.1, 9.0]
-    found = gsp.travel(free, free.home, twist, strokes=bound)
-    loose = gsp.travel(free, free.home, twist)
-    share = np.linspace(0.0, min(loose.distance, 2.0), 20_001)
-    angle = free.at(free.home.moved(share[:, None] * twist)).joints[:, 0]
-    over = (angle < bound[0, 0]) | (angle > bound[0, 1])
-    if over.any():
-        assert 0 <= share[over.argmax()] - found.distance < 3e-4
-    assert found.distance <= loose.distance + 1e-12
+    """Its angle at home is 2.75: upwards it increases to π, and is −π then."""
+    design = driven.rotary()
+    strokes = np.full((6, 2), np.nan)
+    strokes[0] = [2.5, 9.0]
+    found = gsp.travel(design, design.home, UP, strokes=strokes)
+    assert found.limit == f"theta1 = {np.pi:.6g}"
+    step = np.array([1e-6, -1e-6])[:, None] * UP
+    beyond, before = design.at(found.pose.moved(step)).joints[:, 0]
+    assert before == pytest.approx(np.pi, abs=1e-4)
+    assert beyond == pytest.approx(-np.pi, abs=1e-4)
+    strokes[0] = [-4.0, 4.0]
+    assert gsp.travel(design, design.home, UP, strokes=strokes).distance > found.distance + 0.1
     np.testing.assert_array_equal(crank_bounds(np.array([[-4.0, 4.0]])), [[-np.inf, np.inf]])
     np.testing.assert_array_equal(crank_bounds(np.array([[-np.inf, 1.0]])), [[-np.pi, 1.0]])
 

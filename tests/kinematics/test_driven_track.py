@@ -139,6 +139,20 @@ def test_a_log_that_passes_a_singular_posture_ends_before_it():
     raise AssertionError("no log ended as singular")
 
 
+def test_a_log_that_starts_or_ends_at_a_singular_drive_ends_there():
+    design = driven.hexaglide()
+    pose = design.home.moved([0.0, 0.0, 0.3, 0.0, 0.0, 0.0])
+    anchor = pose.position + pose.rotation @ design.platform_points[0]
+    rod = np.linalg.norm((anchor - design.base_points[0])[1:])
+    design = design.replace(legs=[gsp.Slider(rod=rod), *design.legs[1:]])
+    joints = design.at(pose).joints
+    at = gsp.track(design, [joints, joints], pose)
+    assert (at.status, at.reached) == ("singular drive", 0)
+    poses = pose.moved(np.linspace(-0.1, 0.0, 30)[:, None] * [0, 0, 1, 0, 0, 0])
+    to = gsp.track(design, design.at(poses).joints, poses[0])
+    assert (to.status, to.reached) == ("singular drive", 29)
+
+
 def test_angles_of_cranks_may_jump_by_full_turns():
     design = driven.rotary()
     joints = design.at(a_path(design)).joints

@@ -128,9 +128,8 @@ class DrivenTrack:
             for name in ("position", "rotation")
         )
         poses = unchecked(Pose, position, rotation)
-        zero = np.zeros((len(places), 6))
+        points = self._points(poses)
         with np.errstate(all="ignore"):
-            points = reference.points_at(self.design, poses, zero, None)
             here, there = (reference.part(points, at) for at in _both(len(places)))
             # The rows of lines that meet keep the sign that they have before.
             turned = (there.signs * here.signs)[..., None]
@@ -231,12 +230,16 @@ class DrivenTrack:
 
     def below(self, place: Place, margin: float) -> int:
         """Return how a track ends whose margin is too small."""
-        points = reference.points_at(self.design, place.pose, np.zeros((1, 6)), None)
+        points = self._points(place.pose)
         return SINGULAR_DRIVE if self._cosines(points).min() < margin else SINGULAR
+
+    def _points(self, pose: Pose) -> reference.Points:
+        with np.errstate(all="ignore"):
+            return reference.points_at(self.design, pose, np.zeros((pose.size, 6)), None)
 
     def _reason(self, here: Place) -> int:
         """Return how a track ends that gets no further."""
-        points = reference.points_at(self.design, here.pose, np.zeros((1, 6)), None)
+        points = self._points(here.pose)
         if not self.design.design.at(here.pose).defined[0]:
             return UNDEFINED
         if points.undefined[0] or self._cosines(points).min() < NEAR_SINGULAR:
