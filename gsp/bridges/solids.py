@@ -41,7 +41,7 @@ class Solids:
     link_mass : float or None [kg]
         Of each of the two links of a leg.
     platform_mass : float or None [kg]
-        Of the platform.
+        Of the platform, without the balls and rails of joints that are fixed to it.
     metres : float or None [m]
         Length of the design's unit; default by its name ("mm", "m" …; none counts as metres).
 

@@ -74,7 +74,9 @@ def export(
     platform_mass: Annotated[
         float | None,
         typer.Option(
-            help="Mass of the platform, in kg. Default: from the density.", show_default=False
+            help="Mass of the platform, in kg; balls and rails of the joints on it come on top. "
+            "Default: from the density.",
+            show_default=False,
         ),
     ] = None,
     metres: Annotated[
