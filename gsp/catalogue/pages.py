@@ -10,6 +10,7 @@ from gsp.catalogue.equations import EQUATIONS, SYMBOLS
 from gsp.catalogue.published import design, design_names
 from gsp.files.writing import write_text
 from gsp.model.constraints import CONSTRAINTS
+from gsp.model.drives import drives_text
 from gsp.model.legs import LEGS
 
 CSV, PAGE = Path("catalogue/mechanisms.csv"), Path("docs/catalogue.md")
@@ -85,12 +86,13 @@ def _legs() -> str:
 
 
 def _designs() -> str:
-    heads = ("design", "mechanism", "legs", "unit", "characteristic length", "source")
+    heads = ("design", "mechanism", "legs", "drives", "unit", "characteristic length", "source")
     rows = [
         (
             f"`{d.name}`",
             d.mechanism.name,
             str(d.n_legs),
+            drives_text(d.drives),
             d.unit,
             "" if d.characteristic_length is None else f"{d.characteristic_length:.6g}",
             d.source,

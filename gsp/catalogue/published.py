@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from gsp.files.knowledge import design_file, design_files
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design, read_design
+from gsp.model.drives import drives_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,8 +46,9 @@ def design(name: str) -> Design:
 def designs() -> pd.DataFrame:
     """Return a table of the published designs, one per row.
 
-    Columns: name, mechanism, class, n_legs, unit, characteristic_length, pose (the one that the
-    source studies, as text; the design has it as `home`), source.
+    Columns: name, mechanism, class, n_legs, drives ("6 cranks"; "" without drives at the base),
+    unit, characteristic_length, pose (the one that the source studies, as text; the design has it
+    as `home`), source.
 
     Examples
     --------
@@ -64,6 +66,7 @@ def _row(design: Design) -> dict[str, Any]:
         "mechanism": design.mechanism.name,
         "class": design.mechanism.group,
         "n_legs": design.n_legs,
+        "drives": drives_text(design.drives),
         "unit": design.unit,
         "characteristic_length": design.characteristic_length,
         "pose": "" if design.home is None else _pose(design.home),

@@ -27,8 +27,9 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
 from gsp.proof.extremes import BOXES_PER_SEARCH, ENDS_TOLERANCE
-from gsp.ranking.comparison import check_by, check_units
-from gsp.ranking.order import attributes, checked_designs, prepared, rows_of_designs
+from gsp.ranking.comparison import attributes, check_by, check_units
+from gsp.ranking.order import checked_designs, prepared, rows_of_designs
+from gsp.ranking.tables import infinite_means
 from gsp.statics import gravity_wrench
 from gsp.workspace.sets.questions import CELL_BUDGET
 
@@ -159,6 +160,7 @@ def assessed_table(
             task=record_of(task),
             **facts,
             **recorded(task, proofs),
+            **infinite_means(frame, request.names),
         )
         if output:
             output.write(frame)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +29,7 @@ class Format:
     ----------
     suffix : str
         With its dot.
-    write : DataFrame, Path -> None
+    write : DataFrame, Path, headings of columns in LaTeX -> None
     package : str
         The package that pandas needs to write it, "" for none.
     extra : str
@@ -36,19 +37,19 @@ class Format:
     """
 
     suffix: str
-    write: Callable[[pd.DataFrame, Path], object]
+    write: Callable[[pd.DataFrame, Path, Mapping[str, str]], object]
     package: str = ""
     extra: str = ""
 
 
 _FORMATS = (
-    Format(".csv", lambda frame, path: frame.to_csv(path, index=False)),
+    Format(".csv", lambda frame, path, _: frame.to_csv(path, index=False)),
     Format(
-        ".parquet", lambda frame, path: frame.to_parquet(path, index=False), "pyarrow", "tables"
+        ".parquet", lambda frame, path, _: frame.to_parquet(path, index=False), "pyarrow", "tables"
     ),
-    Format(".xlsx", lambda frame, path: _to_excel(frame, path), "openpyxl", "tables"),
-    Format(".md", lambda frame, path: _to_markdown(frame, path), "tabulate", "tables"),
-    Format(".tex", lambda frame, path: _to_latex(frame, path), "jinja2", "tables"),
+    Format(".xlsx", lambda frame, path, _: _to_excel(frame, path), "openpyxl", "tables"),
+    Format(".md", lambda frame, path, _: _to_markdown(frame, path), "tabulate", "tables"),
+    Format(".tex", lambda *parts: _to_latex(*parts), "jinja2", "tables"),
 )
 
 # The name of a mechanism, such as "D1^2 D2 D4 A1^2".
@@ -90,9 +91,10 @@ def write_table(
     metadata: Mapping[str, Any] | None = None,
     *,
     columns: Sequence[str] | None = None,
+    headings: Mapping[str, str] | None = None,
     overwrite: bool = False,
 ) -> None:
-    """Write a table in the format of its suffix, and its metadata beside it as JSON.
+    r"""Write a table in the format of its suffix, and its metadata beside it as JSON.
 
     Parameters
     ----------
@@ -100,11 +102,14 @@ def write_table(
         Its index is not written.
     path : path
         Ending in .csv, .parquet, .xlsx, .md or .tex. In LaTeX the names of mechanisms are set as
-        formulas, `$D_1^{6}$`.
+        formulas, `$D_1^{6}$`, infinite numbers as `$\infty$`, and NaN as a dash.
     metadata : mapping or None
         What JSON can hold; default `frame.attrs`. The version of the library is added.
     columns : sequence of str or None
         The columns to write, in this order, each once; default all.
+    headings : mapping or None
+        Headings of columns in LaTeX, by their names; default the names. Other formats have the
+        names.
     overwrite : bool
         Whether files that exist may be replaced.
 
@@ -131,7 +136,8 @@ def write_table(
     facts |= frame.attrs if metadata is None else dict(metadata)
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"
     form = FORMATS[Path(path).suffix.lower()]
-    write_file(path, lambda temporary: form.write(chosen, temporary), overwrite=overwrite)
+    named = headings or {}
+    write_file(path, lambda temporary: form.write(chosen, temporary, named), overwrite=overwrite)
     write_text(sidecar(path), text, overwrite=overwrite)
 
 
@@ -163,32 +169,42 @@ def _one_cell(value: Any) -> Any:
     return " ".join(value.split()).replace("|", "\\|") if isinstance(value, str) else value
 
 
-def _to_latex(frame: pd.DataFrame, path: Path) -> None:
-    shown = frame.set_axis([_escaped(str(column)) for column in frame], axis="columns")
-    for column in shown:
-        if shown[column].dtype.kind not in "iufb":
-            shown[column] = [_latex(value) for value in shown[column]]
-    real: dict[Any, Any] = {column: "{:.7g}" for column in shown if shown[column].dtype.kind == "f"}
-    # Significant digits: |det J| of a small design is 1e-20 and not 0.
-    styled = shown.style.hide(axis="index").format(real)
-    styled.to_latex(path, hrules=True, encoding="utf-8")
+def _to_latex(frame: pd.DataFrame, path: Path, headings: Mapping[str, str]) -> None:
+    """Write a table, whose columns have given headings in LaTeX or else their names."""
+    names = [headings.get(str(column), escaped(str(column))) for column in frame]
+    shown = frame.astype(object).set_axis(range(len(names)), axis="columns")
+    shown = shown.map(_latex).set_axis(names, axis="columns")
+    right = "".join("r" if frame[column].dtype.kind in "iuf" else "l" for column in frame)
+    styled = shown.style.hide(axis="index")
+    styled.to_latex(path, hrules=True, column_format=right, encoding="utf-8")
 
 
 def _latex(value: Any) -> str:
-    r"""Return a cell of text: the name of a mechanism as a formula, another text escaped.
+    r"""Return a cell: the name of a mechanism or a number as a formula, another text escaped.
 
-    >>> print(_latex("D1^6"), _latex("D2 A1^2"), _latex("toz_2016"))
-    $D_1^{6}$ $D_2\,A_1^{2}$ toz\_2016
+    >>> print(_latex("D1^6"), _latex("D2 A1^2"), _latex("toz_2016"), _latex(1 / 3))
+    $D_1^{6}$ $D_2\,A_1^{2}$ toz\_2016 0.3333333
     """
+    if isinstance(value, float):
+        return _number(value)
     text = str(value)
     if not _MECHANISM.fullmatch(text):
-        return _escaped(text)
+        return escaped(text)
     parts = [part.partition("^") for part in text.split()]
     powers = [f"{name[0]}_{name[1:]}" + (f"^{{{n}}}" if n else "") for name, _, n in parts]
     return "$" + r"\,".join(powers) + "$"
 
 
-def _escaped(text: str) -> str:
+def _number(value: float) -> str:
+    """Return seven significant digits: |det J| of a small design is 1e-20 and not 0."""
+    if math.isnan(value):
+        return "--"
+    if math.isinf(value):
+        return r"$\infty$" if value > 0.0 else r"$-\infty$"
+    return f"{value:.7g}"
+
+
+def escaped(text: str) -> str:
     """Return a text with the characters that LaTeX takes for commands escaped."""
     special = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
     return "".join(special.get(c, f"\\{c}" if c in "&%$#_{}" else c) for c in text)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 from typing import ClassVar
@@ -154,3 +156,13 @@ def _check_rod_and_branch(drive: Drive) -> None:
     if check_integer("branch", drive.branch, -1) not in (-1, 1):
         raise InvalidInput(expected("branch", "1 or -1", brief(drive.branch)))
     object.__setattr__(drive, "branch", int(drive.branch))
+
+
+def drives_text(drives: Iterable[Drive | None]) -> str:
+    """Return how many drives of each kind legs have, in words; "" if they have none.
+
+    >>> drives_text([Slider(rod=2.0)] * 2 + [None, Crank(arm=[1.0, 0.0, 0.0], rod=2.0)])
+    '2 sliders, 1 crank'
+    """
+    counts = Counter(drive.kind for drive in drives if drive is not None)
+    return ", ".join(f"{n} {kind}{'s' * (n > 1)}" for kind, n in counts.items())

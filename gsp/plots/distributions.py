@@ -15,7 +15,7 @@ from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.scales import Scale, scale_of, unbounded
 from gsp.plots.common.style import CLASSES, GREY, design_label, log_ticks, new_panels, plain
-from gsp.plots.common.tables import column, index_label
+from gsp.plots.common.tables import column, driven, index_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -133,6 +133,8 @@ def _grid(
     ax.set_xlabel(f"{index_label(ordered, name)} ({INDICES[name].better} is better)")
     ax.set_ylim(-0.6, len(ordered) - 0.4)
     names = [_label(str(d), i + 1) for i, d in enumerate(ordered["design"])]
+    for i in np.flatnonzero(driven(ordered)):
+        names[i] += f"\n{plain(str(ordered['drives'].iloc[i]))}"
     ax.set_yticks(rows, names if labels else [])
     ax.grid(visible=True, axis="x")
     ax.set_axisbelow(True)

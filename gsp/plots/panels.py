@@ -12,7 +12,7 @@ from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.scales import spans_much
 from gsp.plots.common.style import CLASSES, GREY, VERMILION, design_label, log_ticks, symbol_text
-from gsp.plots.common.tables import column, index_label
+from gsp.plots.common.tables import column, driven, index_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,9 +59,14 @@ def panel(ax: Axes, table: pd.DataFrame, x: str, y: str, *, alone: bool = False)
     across, up = (places(table, name) for name in (x, y))
     ax.set_xscale("log" if across.log else "linear")
     ax.set_yscale("log" if up.log else "linear")
+    hollow = driven(table)
     for group, (colour, marker) in CLASSES.items():
         mine = (table["class"] == group).to_numpy()
-        _dots(ax, across.values[mine], up.values[mine], marker, colour, alpha=0.75)
+        filled, rings = mine & ~hollow, mine & hollow
+        _dots(ax, across.values[filled], up.values[filled], marker, colour, alpha=0.75)
+        if rings.any():
+            edges: dict[str, Any] = {"facecolors": "none", "edgecolors": colour, "zorder": 2}
+            ax.scatter(across.values[rings], up.values[rings], s=16, marker=marker, **edges)
     others = ~table["class"].isin(list(CLASSES)).to_numpy()
     _dots(ax, across.values[others], up.values[others], "o", GREY)
     best = _best(table)
@@ -195,18 +200,19 @@ def index_name_panel(ax: Axes, table: pd.DataFrame, name: str) -> None:
 
 
 def marks(table: pd.DataFrame) -> list[Line2D]:
-    """Entries of the legend: the classes that are there, and the design that ranks first."""
+    """Entries of the legend: classes, hollow marks for drives, and the design that ranks first."""
     from matplotlib.lines import Line2D
 
-    def mark(marker: str, colour: str, size: float, label: str) -> Line2D:
-        return Line2D(
-            [], [], linestyle="", marker=marker, color=colour, markersize=size, label=label
-        )
+    def mark(marker: str, colour: str, size: float, label: str, fill: str = "full") -> Line2D:
+        how: Any = {"linestyle": "", "marker": marker, "color": colour, "fillstyle": fill}
+        return Line2D([], [], markersize=size, label=label, **how)
 
     there = set(table["class"])
     found = [mark(m, colour, 6, g) for g, (colour, m) in CLASSES.items() if g in there]
     if there - set(CLASSES):
         found.append(mark("o", GREY, 6, "other"))
+    if driven(table).any():
+        found.append(mark("o", INK, 6, "drives", "none"))
     by = str(table.attrs.get("by"))
     symbol = symbol_text(by) if by in INDICES else "rank"
     label = design_label(str(table["design"].iloc[_best(table)]))

@@ -14,7 +14,7 @@ from gsp.figures import new_axes, style
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.style import CLASSES, GREY, axes_or_new
-from gsp.plots.common.tables import check_frame, chosen_indices, column
+from gsp.plots.common.tables import check_frame, chosen_indices, column, driven
 from gsp.plots.distributions import draw_distributions
 from gsp.plots.panels import (
     correlation,
@@ -48,7 +48,8 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> 
     For up to eight designs it has one panel per index: how the index is distributed over the poses
     for each design. For more it shows the mean indices against each other: below the diagonal one
     panel per pair, with the better end of both indices at the top and on the right; above it
-    Spearman's rank correlation, 1 for equal rank orders. One index is drawn against its rank.
+    Spearman's rank correlation, 1 for equal rank orders. One index is drawn against its rank. Marks
+    of designs with drives at the base are hollow.
 
     Parameters
     ----------
@@ -174,8 +175,8 @@ def _draw_ranges(
     """Draw a line and a mark for each mechanism, and return a mark of each class."""
     frame = pd.DataFrame(
         {"mechanism": table["mechanism"], "class": table["class"], "value": values}
-    )
-    groups = frame.dropna(subset=["value"]).groupby("mechanism", sort=False)
+    ).assign(driven=driven(table))
+    groups = frame.dropna(subset=["value"]).groupby(["mechanism", "driven"], sort=False)
     ends = groups.agg(group=("class", "first"), low=("value", "min"), high=("value", "max"))
     best, worst = ("low", "high") if lower else ("high", "low")
     ends = ends.sort_values([best, worst], ascending=lower, kind="stable")

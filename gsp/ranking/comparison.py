@@ -8,8 +8,9 @@ from typing import Any
 
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, UnknownName, brief, expected
-from gsp.evaluation.request import kind_of
-from gsp.evaluation.settings import Job
+from gsp.evaluation.maxima import facts
+from gsp.evaluation.request import Request, kind_of, left_out
+from gsp.evaluation.settings import Job, Settings, provenance
 from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.model.units import METRES_PER_UNIT, check_unit
@@ -155,3 +156,27 @@ def differences(jobs: Sequence[Job]) -> dict[str, Any]:
     if without:
         found["unitless"] = [design.name for design in without]
     return found
+
+
+def attributes(
+    request: Request, by: str, given_designs: Sequence[Design], given: Settings
+) -> dict[str, Any]:
+    """Return what the table records: shared parameters, and where designs differ."""
+    designs = [job.design for job in request.jobs]
+    pairs = zip(designs, given_designs, strict=True)
+    renamed = {new.name: old.name for new, old in pairs if new.name != old.name}
+    if all(job.settings.maximum == "sample" for job in request.jobs):
+        given = Settings(given.length, given.ellipsoid, "sample")
+    shared = len({job.settings for job in request.jobs}) == 1
+    return {
+        **provenance(request.jobs[0].settings if shared else given),
+        "by": by,
+        "indices": list(request.names),
+        **left_out(request),
+        "poses": request.pose.size,
+        "unit": check_units(designs),
+        "units": {name: units_of(name, designs) for name in request.names},
+        **differences(request.jobs),
+        **({"renamed": renamed} if renamed else {}),
+        **facts(request.jobs, request.pose),
+    }

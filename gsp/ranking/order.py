@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from gsp.checks import check_items, is_a
 from gsp.evaluation.blocks import DesignValues, by_design
-from gsp.evaluation.maxima import facts, mended, with_maxima
+from gsp.evaluation.maxima import mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
-from gsp.evaluation.request import Request, check_designs, check_resume, left_out, make_request
-from gsp.evaluation.settings import Maximum, Settings, divide_by_largest, provenance
+from gsp.evaluation.request import Request, check_designs, check_resume, make_request
+from gsp.evaluation.settings import Maximum, Settings, divide_by_largest
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Mask
@@ -22,15 +22,9 @@ from gsp.indices import index_name
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.progress import Progress, Report, meter
-from gsp.ranking.comparison import (
-    check_by,
-    check_units,
-    differences,
-    distinct_names,
-    units_of,
-)
+from gsp.ranking.comparison import attributes, check_by, check_units, distinct_names
 from gsp.ranking.restrictions import FEASIBLE, WITHIN_STROKES, limits_record, restrictions
-from gsp.ranking.tables import ranked, share, summary
+from gsp.ranking.tables import infinite_means, ranked, share, summary, with_drives
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,14 +93,17 @@ def rank(
     Returns
     -------
     pandas.DataFrame
-        One row per design, best first: rank, design, mechanism, class, n_legs; then for each index
+        One row per design, best first: rank, design, mechanism, class, n_legs; drives ("6 cranks"),
+        if legs of a design are driven at the base; then for each index
         its mean, min, 5 % quantile, median, 95 % quantile and max over the defined poses
         ("control_number_mean", …; quantiles are observed values, the nearest ones, as an
         interpolation between a number and inf has no meaning); then the shares of singular and of
         undefined poses;
         "within_strokes", if a design has strokes: the share of poses at which its joints are within
         them, NaN for designs without; "feasible", if limits are given: the share of poses that
-        satisfy them. `attrs` holds the parameters; those that differ between designs are None.
+        satisfy them. `attrs` holds the parameters; those that differ between designs are None. A
+        singular pose makes the mean of a condition number inf: `attrs["infinite_means"]` counts
+        such designs by index, if there are some.
 
     Raises
     ------
@@ -156,6 +153,7 @@ def rank(
         if output and output.finished:
             frame = output.result()
             frame.attrs.update(attributes(request, by, chosen, Settings(length, ellipsoid)))
+            frame.attrs.update(infinite_means(frame, request.names))
             return frame
         beside = None if output is None else output.folder
         folder = beside if parts is None else parts
@@ -164,6 +162,7 @@ def rank(
             request, rows = rows_of_designs(request, asked, kept, report)
             frame = ranked(pd.DataFrame(rows), by)
             frame.attrs.update(attributes(request, by, chosen, Settings(length, ellipsoid)))
+            frame.attrs.update(infinite_means(frame, request.names))
             if output:
                 output.write(frame)
     return frame
@@ -231,30 +230,6 @@ def fingerprint(request: Request, by: str, limits: Limits | None) -> str:
     return digest(request.jobs, request.pose, request.names, limits=limits_record(limits), **how)
 
 
-def attributes(
-    request: Request, by: str, given_designs: Sequence[Design], given: Settings
-) -> dict[str, Any]:
-    """Return what the table records: shared parameters, and where designs differ."""
-    designs = [job.design for job in request.jobs]
-    pairs = zip(designs, given_designs, strict=True)
-    renamed = {new.name: old.name for new, old in pairs if new.name != old.name}
-    if all(job.settings.maximum == "sample" for job in request.jobs):
-        given = Settings(given.length, given.ellipsoid, "sample")
-    shared = len({job.settings for job in request.jobs}) == 1
-    return {
-        **provenance(request.jobs[0].settings if shared else given),
-        "by": by,
-        "indices": list(request.names),
-        **left_out(request),
-        "poses": request.pose.size,
-        "unit": check_units(designs),
-        "units": {name: units_of(name, designs) for name in request.names},
-        **differences(request.jobs),
-        **({"renamed": renamed} if renamed else {}),
-        **facts(request.jobs, request.pose),
-    }
-
-
 def rows_of_designs(
     request: Request,
     asked: tuple[str, ...],
@@ -278,7 +253,8 @@ def rows_of_designs(
         rows[values.job] = row
         if parts:
             parts.write_row(values.job, rows[values.job])
-    return replace(request, jobs=jobs), [rows[job] for job in numbers]
+    designs = [job.design for job in jobs]
+    return replace(request, jobs=jobs), with_drives([rows[job] for job in numbers], designs)
 
 
 def row_of_design(request: Request, asked: tuple[str, ...], values: DesignValues) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
 from gsp.model.design import Design
+from gsp.model.drives import drives_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,6 +27,17 @@ def ranked(frame: pd.DataFrame, by: str) -> pd.DataFrame:
     order = frame[f"{by}_mean"].rank(method="min", ascending=ascending, na_option="bottom")
     frame.insert(0, "rank", order.astype(int))
     return frame.sort_values("rank", kind="stable", ignore_index=True)
+
+
+def infinite_means(frame: pd.DataFrame, names: Sequence[str]) -> dict[str, dict[str, int]]:
+    """Return what `attrs` of a table records about infinite means; nothing if there are none.
+
+    One singular pose makes the mean of a condition number infinite; quantiles need not be.
+    """
+    means = {name: frame[f"{name}_mean"] for name in names if f"{name}_mean" in frame}
+    counts = {name: int(np.isinf(mean.astype(float)).sum()) for name, mean in means.items()}
+    found = {name: count for name, count in counts.items() if count}
+    return {"infinite_means": found} if found else {}
 
 
 def summary(design: Design, names: Sequence[str], columns: Array, singular: Mask) -> dict[str, Any]:
@@ -54,6 +66,19 @@ def summary(design: Design, names: Sequence[str], columns: Array, singular: Mask
     row["singular"] = share(singular)
     row["undefined"] = share(undefined)
     return row
+
+
+def with_drives(rows: Sequence[dict[str, Any]], designs: Sequence[Design]) -> list[dict[str, Any]]:
+    """Return rows of designs with the column "drives" after "n_legs", if one has drives."""
+    texts = [drives_text(design.drives) for design in designs]
+    if not any(texts):
+        return list(rows)
+    found = []
+    for row, text in zip(rows, texts, strict=True):
+        items = list(row.items())
+        place = list(row).index("n_legs") + 1
+        found.append(dict([*items[:place], ("drives", text), *items[place:]]))
+    return found
 
 
 def share(flags: Mask) -> float:

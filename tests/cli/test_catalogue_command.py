@@ -38,6 +38,9 @@ def test_designs(gsp, tmp_path):
     out = gsp("catalogue", "--designs", "--out", "d.csv").out
     table = pd.read_csv(tmp_path / "d.csv")
     assert tuple(table["name"]) == library.catalogue.design_names()
+    drives = table.set_index("name")["drives"].dropna().to_dict()
+    assert drives == {"lane-modified-paradex": "6 sliders", "lane-rotary": "6 cranks"}
+    assert "6 cranks" in next(line for line in out.splitlines() if line.startswith("lane-rotary"))
     assert all(name in out for name in table["name"])
 
 

@@ -215,6 +215,46 @@ def test_formats(gsp, tmp_path, suffix):
     assert json.loads((tmp_path / f"r.{suffix}.json").read_text())["by"] == "condition_number"
 
 
+def test_headings_in_latex_are_symbols_with_units(gsp, tmp_path):
+    given = ("--columns", "rank,design,CTN,manipulability_q05")
+    assert gsp("rank", *TWO, *FEW, *given, "--out", "r.tex").status == 0
+    header = (tmp_path / "r.tex").read_text().splitlines()[2]
+    assert header == (r"rank & design & $\mathrm{CTN}$ mean & $|\det J|$ 5\,\% [mm$^{3}$] \\")
+    assert gsp("rank", *TWO, *FEW, "--out", "m.tex").status == 0
+    header = (tmp_path / "m.tex").read_text().splitlines()[2]
+    for symbol in (r"$\mathrm{CDN}_\mathrm{CL}$", r"$\lambda$", r"$\sigma_\mathrm{min}$"):
+        assert f" & {symbol} mean" in header
+
+
+@pytest.mark.parametrize("suffix", ["csv", "tex"])
+def test_drives_are_printed_and_written(gsp, tmp_path, suffix):
+    pair = ("lane-rotary", "lane-modified-paradex", "--length", 1, "--indices", "CTN")
+    result = gsp("rank", *pair, *FEW, "--box", "0 0 11 0 0 0", "--out", f"d.{suffix}")
+    lines = [line.split() for line in result.out.splitlines()]
+    heads = next(line for line in lines if line[:1] == ["rank"])
+    assert heads[:4] == ["rank", "design", "class", "drives"]
+    assert any(line[1:5] == ["lane-rotary", "6D", "6", "cranks"] for line in lines)
+    text = (tmp_path / f"d.{suffix}").read_text()
+    assert "6 sliders" in text
+    mixed = gsp("rank", *pair, *FEW, "--columns", "design,drives", "--out", "e.csv")
+    assert mixed.status == 0
+    assert pd.read_csv(tmp_path / "e.csv").columns.tolist() == ["design", "drives"]
+
+
+def test_infinite_means_are_said(gsp, tmp_path):
+    """At the pose the anchors of this design coincide in a plane; of the other one they do not."""
+    box = ("--box", "0 0 0 0 0 0", "--samples", 1, "--no-plot", "--length", 1)
+    pair = ("lee-2000-3-3", "workspace-6-3")
+    result = gsp("rank", *pair, *box, "--indices", "CDN_CL,CTN", "--out", "r.csv")
+    table = pd.read_csv(tmp_path / "r.csv")
+    named = ", ".join(table.loc[np.isinf(table["condition_number_mean"]), "design"])
+    assert "lee-2000-3-3" in named
+    line = f"infinite means of condition_number, as poses are singular: {named}; the table has "
+    assert result.err.startswith(f"gsp: {line}")
+    facts = json.loads((tmp_path / "r.csv.json").read_text())
+    assert list(facts["infinite_means"]) == ["condition_number"]
+
+
 def test_nothing_is_overwritten_unless_forced(gsp, tmp_path):
     for name in ("r.csv", "r.csv.json", "r.png"):
         path = tmp_path / name
@@ -397,7 +437,7 @@ def test_columns_are_chosen(gsp, tmp_path):
     text = (tmp_path / "r.tex").read_text()
     assert r"$D_1^{6}$" in text
     assert r"$D_1^{3}\,D_2^{3}$" in text
-    assert r"control\_number\_mean" in text
+    assert r"$\mathrm{CTN}$ mean" in text
     assert "q05" not in text
     assert "unknown column 'beauty'" in gsp("rank", *TWO, "--columns", "beauty").error
 

@@ -97,8 +97,9 @@ def test_forces_and_violations_are_columns(gsp, file):
 
 def test_a_text_in_latex_has_score_and_what_is_wanted(gsp, file):
     assert gsp(*WORDS, "D1^6", "--no-plot", "--out", "a.tex").status == 0
-    head = (file.parent / "a.tex").read_text().splitlines()[2].replace("\\_", "_")
-    names = ["rank", "design", "class", "score", "control_number_mean", "condition_number_max"]
+    head = (file.parent / "a.tex").read_text().splitlines()[2]
+    indices = [r"$\mathrm{CTN}$ mean", r"$\mathrm{CDN}_\mathrm{CL}$ max"]
+    names = ["rank", "design", "class", "score", *indices]
     assert head.rstrip("\\ ").split(" & ") == names
 
 

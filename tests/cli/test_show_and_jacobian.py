@@ -410,3 +410,12 @@ def test_the_indices_that_are_left_out_are_found_as_it_is_stated(gsp, design):
     named = [hint for hint in hints if hint.startswith("--indices")]
     assert named == ([] if design.startswith("lane") else ["--indices λ"])
     assert all(gsp("show", design, *hint.split()).status == 0 for hint in named)
+
+
+def test_of_designs_with_drives_nothing_is_advised_that_is_refused(gsp):
+    """SD and λ have no values for them; their drives are in the first line."""
+    shown = gsp("show", "lane-rotary", "--length", 1)
+    assert shown.out.startswith("lane-rotary, D1^6, class 6D, 6 cranks\n")
+    assert "SD" not in shown.out
+    assert "--indices" not in shown.out
+    assert "SD" not in gsp("show", "lane-rotary").out

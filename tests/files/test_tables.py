@@ -37,6 +37,23 @@ def test_markdown_and_latex(tmp_path):
     assert "0.333333" in latex
 
 
+def test_numbers_that_are_not_finite_in_latex(tmp_path):
+    frame = FRAME.assign(low=[-np.inf, 2], mixed=[1.5, "a_b"], count=[3, 4], also=[np.nan, True])
+    write_table(frame, tmp_path / "t.tex", headings={"value": "$x$ [mm$^{2}$]", "count": "#"})
+    lines = (tmp_path / "t.tex").read_text().splitlines()
+    assert lines[0] == r"\begin{tabular}{lrrrlrl}"
+    assert lines[2] == r"name & $x$ [mm$^{2}$] & none & low & mixed & # & also \\"
+    assert lines[4] == r"$D_1^{6}$ & 0.3333333 & -- & $-\infty$ & 1.5 & 3 & -- \\"
+    assert lines[5] == r"a \& b & $\infty$ & -- & 2 & a\_b & 4 & True \\"
+
+
+def test_columns_of_one_name_in_latex(tmp_path):
+    """Two columns may have one heading."""
+    frame = pd.DataFrame({"a": [1.0], "b": [2]})
+    write_table(frame, tmp_path / "t.tex", headings={"a": "x", "b": "x"})
+    assert r"x & x \\" in (tmp_path / "t.tex").read_text()
+
+
 def test_metadata(tmp_path):
     path = tmp_path / "t.csv"
     write_table(FRAME, path, {"unit": "mm"})

@@ -14,7 +14,7 @@ from gsp.indices import INDICES
 from gsp.plots import against, panels, ranges, ranking
 from gsp.plots.common.style import CLASSES, save_figure
 from gsp.plots.rankings import first_names
-from tests import campaign
+from tests import campaign, driven
 from tests.plots.ink import assert_ink, ink
 
 
@@ -329,6 +329,43 @@ def test_ranges_are_of_all_placements_of_a_mechanism(name):
     assert len(drawn) == len(marks) == len(names)
     assert ax.yaxis_inverted() == better_is_low
     assert [t.get_text() for t in ax.get_legend().get_texts()] == ["6D, best", "3D3A, best"]
+
+
+@pytest.fixture(scope="module")
+def drives():
+    """A rotary platform, a hexaglide, and a telescopic hexapod on the anchors of the first."""
+    rotary = driven.rotary()
+    plain = gsp.Design(["D1"] * 6, rotary.base_points, rotary.platform_points, unit="m", name="t")
+    names = ["CTN", "CDN_CL"]
+    few = [rotary.replace(name="r"), driven.hexaglide().replace(name="h"), plain]
+    many = [plain.replace(name=f"t{i}").scaled(1.0 + 0.01 * i) for i in range(6)]
+    return [gsp.rank(x, rotary.home, names, length=1.0) for x in (few, [*few, *many])]
+
+
+def test_designs_with_drives_have_hollow_marks_and_their_drives_as_labels(drives):
+    few, many = drives
+    labels = [t.get_text() for t in ranking(few).axes[0].get_yticklabels()]
+    assert sorted(labels) == ["h\n6 sliders", "r\n6 cranks", "t"]
+    figure = ranking(many)
+    assert "drives" in [t.get_text() for t in figure.legends[0].get_texts()]
+    rings = next(c for c in figure.axes[0].collections if not len(c.get_facecolors()))
+    wanted = many.loc[many["drives"] != "", ["condition_number_mean", "control_number_mean"]]
+    found = np.asarray(rings.get_offsets())
+    if figure.axes[0].get_xlabel().startswith("CTN"):
+        found = found[:, ::-1]
+    np.testing.assert_allclose(np.sort(found, axis=0), np.sort(wanted.to_numpy(), axis=0))
+    assert len(rings.get_offsets()) == 2
+
+
+def test_ranges_of_legs_with_drives_are_apart(drives):
+    values = drives[1]["control_number_mean"]
+    ax = ranges(drives[1], "CTN")
+    lines = [x for c in ax.collections if hasattr(c, "get_segments") for x in c.get_segments()]
+    assert len(lines) == 2
+    hollow = drives[1]["drives"] != ""
+    ends = sorted([x[:, 1].min(), x[:, 1].max()] for x in lines)
+    wanted = sorted([values[m].min(), values[m].max()] for m in (hollow, ~hollow))
+    np.testing.assert_allclose(ends, wanted)
 
 
 def test_ranges_need_a_mechanism_and_a_mean(table):

@@ -13,6 +13,7 @@ from gsp.errors import InvalidInput, MissingParameter, UnknownIndex
 from gsp.evaluation import request
 from gsp.indices import INDICES
 from gsp.ranking.tables import statistics
+from tests import driven
 from tests.support import random_design, random_pose
 
 ELLIPSOID = gsp.Ellipsoid([0.5, 0.7, 0.4])
@@ -176,11 +177,30 @@ def test_some_singular_poses():
     design = gsp.Design(["D1"] * 6, points, points)
     angles = np.full((21, 3), 0.3)
     angles[0] = 0.0  # parallel legs
-    table = gsp.rank(design, gsp.Pose.from_rpy([0, 0, 1], angles), ["condition_number"], length=1.0)
+    pose, names = gsp.Pose.from_rpy([0, 0, 1], angles), ["condition_number", "control_number"]
+    table = gsp.rank(design, pose, names, length=1.0)
+    assert table.attrs["infinite_means"] == {"condition_number": 1}
+    assert "infinite_means" not in gsp.rank(design, pose[1:], names, length=1.0).attrs
     row = table.iloc[0]
     assert row["singular"] == pytest.approx(1 / 21)
     assert np.isinf(row[["condition_number_mean", "condition_number_max"]].astype(float)).all()
     assert np.isfinite(row[["condition_number_median", "condition_number_q95"]].astype(float)).all()
+
+
+def test_drives_have_a_column_if_a_design_has_some(tmp_path):
+    designs = [driven.rotary().replace(name="r"), driven.hexaglide(), driven.mixed()]
+    plain = gsp.Design(["D1"] * 6, driven.BASE, driven.PLATFORM, unit="m", name="plain")
+    pose = designs[0].home
+    table = gsp.rank([*designs, plain], pose, ["CTN"], length=1.0, parts=tmp_path / "parts")
+    assert list(table.columns[:6]) == ["rank", "design", "mechanism", "class", "n_legs", "drives"]
+    words = dict(zip(table["n_legs"].astype(str) + table["design"], table["drives"], strict=True))
+    assert words == {
+        "6r": "6 cranks",
+        "6unnamed": "6 sliders",
+        "7unnamed (2)": "2 sliders, 2 cranks",
+        "6plain": "",
+    }
+    assert "drives" not in gsp.rank(plain, pose, ["CTN"], length=1.0)
 
 
 def test_ties_share_a_rank():

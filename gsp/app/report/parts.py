@@ -17,6 +17,7 @@ from gsp.app.scene.figure import figure
 from gsp.app.state.matrices import HOMOGENEOUS, LINES, PLAIN, matrix
 from gsp.app.state.reading import IndexReading, powers
 from gsp.geometry.vectors import Array
+from gsp.model.drives import drives_text
 from gsp.rounding import digits_within, rounded_down
 
 # Where the characteristic length is from.
@@ -61,8 +62,10 @@ def dimensions(study: Study) -> str:
 def _facts(study: Study) -> list[tuple[str, str]]:
     design = study.shown.design
     length = measured(study.length, design.unit, 6)
+    mechanism = design.mechanism
+    kind = (mechanism.name, f"class {mechanism.group}", drives_text(design.drives))
     facts = [
-        ("mechanism", f"{design.mechanism.name}, class {design.mechanism.group}"),
+        ("mechanism", ", ".join(part for part in kind if part)),
         ("unit of length", design.unit or "not stated"),
         ("source", design.source or "not stated"),
         (

@@ -34,7 +34,7 @@ from gsp.geometry.pose.texts import pose_text
 from gsp.indices import index_names
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design
-from gsp.model.drives import Crank
+from gsp.model.drives import Crank, drives_text
 from gsp.model.legs import Leg
 from gsp.model.mechanism import Mechanism
 from gsp.model.posture import Posture
@@ -144,7 +144,9 @@ def _show_mechanism(mechanism: Mechanism) -> None:
 
 
 def _show_design(design: Design) -> None:
-    say(f"{design.name}, {design.mechanism.name}, class {design.mechanism.group}", "bold")
+    drives = drives_text(design.drives)
+    kind = f"{design.mechanism.name}, class {design.mechanism.group}"
+    say(f"{design.name}, {kind}{drives and ', '}{drives}", "bold")
     say(f"Source     {design.source or 'not stated'}")
     say(f"Unit       {design.unit or 'not stated'}")
     if design.characteristic_length is not None:

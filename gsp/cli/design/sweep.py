@@ -29,6 +29,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
+from gsp.cli.outputs.headings import latex_headings
 from gsp.cli.outputs.indices import ellipsoid_text
 from gsp.cli.outputs.pictures import (
     Renderer,
@@ -188,7 +189,7 @@ def sweep_command(
         say(ellipsoid_text(spheroid, found), "dim")
     if out is not None:
         attributes = {str(k): v for k, v in table.attrs.items()}
-        write_table(table, out, attributes, overwrite=force)
+        write_table(table, out, attributes, headings=latex_headings(table), overwrite=force)
         say(f"Table      {out}")
     if plot is not None or film is not None:
         from gsp import plots

@@ -19,7 +19,7 @@ from gsp.model.mechanism import NAMES
 if TYPE_CHECKING:
     import pandas as pd
 
-DESIGNS = ("name", "mechanism", "n_legs", "unit", "characteristic_length", "source")
+DESIGNS = ("name", "mechanism", "n_legs", "drives", "unit", "characteristic_length", "source")
 PLANAR = ("name", "class", "chains", "mobility", "exchanged")
 # Names of parameters that select mechanisms, and of those that select what is listed.
 FILTERS = ("group", "constraint", "symmetric")

@@ -10,7 +10,7 @@ from gsp.cli.inputs.defaults import own_ellipsoid
 from gsp.cli.outputs.console import Table, number, plain_table, say, show_table
 from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError
-from gsp.evaluation.request import choose_indices
+from gsp.evaluation.request import NOT_OF_DRIVES, choose_indices
 from gsp.evaluation.settings import Job, Settings, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import determinant_sign
@@ -89,11 +89,11 @@ def _left_out(design: Design, settings: Settings, names: list[str]) -> list[str]
     with_length, by_name = [], []
     for name in names:
         index = INDICES[name]
+        if design.driven and name in NOT_OF_DRIVES:
+            continue
         needs = index.missing(design, (*settings.given(), "maximum"))
         if "length" in needs:
             with_length.append(index.symbol)
-        elif "maximum" in index.needs and design.driven:
-            continue  # there is no search for the maximum of such designs
         elif not needs and index.actuators in (None, len(design.joint_names)):
             by_name.append(index.symbol)
     # All indices need what one of them needs.

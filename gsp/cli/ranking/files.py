@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gsp.checks import check_separated
 from gsp.cli.interrupts import INTERRUPTED
 from gsp.cli.outputs.console import say, warn
+from gsp.cli.outputs.headings import latex_headings
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.errors import (
     InvalidInput,
@@ -33,7 +34,21 @@ if TYPE_CHECKING:
 RESULT = Path("results/ranking.csv")
 KEYS = ("rank", "design", "class")
 # Columns that are not statistics of an index.
-COLUMNS = (*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE)
+COLUMNS = (
+    *KEYS,
+    "mechanism",
+    "n_legs",
+    "drives",
+    "singular",
+    "undefined",
+    WITHIN_STROKES,
+    FEASIBLE,
+)
+
+
+def keys_of(table: pd.DataFrame) -> tuple[str, ...]:
+    """Return the columns that name a design: with its drives, if a design of the table has some."""
+    return (*KEYS, *(("drives",) if "drives" in table else ()))
 
 
 class Files(NamedTuple):
@@ -208,13 +223,14 @@ def save(
             free.release()
         return
     if columns is None and path.suffix.lower() == ".tex":
-        columns = [*KEYS, *(f"{name}_mean" for name in table.attrs["indices"])]
+        columns = [*keys_of(table), *(f"{name}_mean" for name in table.attrs["indices"])]
     missing = [name for name in columns or () if name not in table]
     if missing:
         names = ", ".join(missing)
         warn(f"columns left out: {names}: not computed, as a parameter such as --length is missing")
         columns = [name for name in columns or () if name in table] or None
-    write_table(table, path, metadata, columns=columns, overwrite=force)
+    headings = latex_headings(table)
+    write_table(table, path, metadata, columns=columns, headings=headings, overwrite=force)
     say(f"Table      {path} ({len(table)} rows), metadata {sidecar(path)}")
     if picture:
         draw(table, path.with_suffix(".png"), force)

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gsp.cli.outputs.console import Table, counted, number, plain_table, say, stdout
 from gsp.cli.outputs.postures import box_text
 from gsp.cli.ranking.candidates import Candidates
-from gsp.cli.ranking.files import KEYS
+from gsp.cli.ranking.files import keys_of
 from gsp.cli.ranking.plan import Plan
 from gsp.indices import INDICES
 from gsp.indices.table import ARROWS
@@ -77,31 +79,48 @@ def _ellipsoid(plan: Plan) -> str:
 
 
 def left_out(plan: Plan, table: pd.DataFrame, chosen: tuple[str, ...] | None) -> Iterator[str]:
-    """Yield one line per index that was not computed, and one for designs without a value."""
+    """Yield one line per index that was not computed, for infinite means, and for no value."""
     for name, index in INDICES.items():
         if chosen is None and index.routine and name not in table.attrs["indices"]:
             needs = {need for d in plan.designs for need in index.missing(d, plan.given(d))}
             texts = sorted(f"--{n}" if n in index.parameters else n for n in needs)
             yield f"{name} is left out: it needs {', '.join(texts)}"
+    yield from infinite_note(table)
     by = table.attrs["by"]
     without = table.loc[table[f"{by}_mean"].isna(), "design"].tolist()
     if without:
-        more = f" and {len(without) - MOST_NAMED} more" if len(without) > MOST_NAMED else ""
-        names = ", ".join(without[:MOST_NAMED]) + more
         cause = "no pose is within the strokes" if plan.feasible else f"no pose has a {by}"
-        yield f"{cause}: {names}"
+        yield f"{cause}: {_named(without)}"
+
+
+def infinite_note(table: pd.DataFrame) -> Iterator[str]:
+    """Yield one line on designs with infinite means, if there are some."""
+    infinite = table.attrs.get("infinite_means", {})
+    if infinite:
+        means = table[[f"{name}_mean" for name in infinite]].to_numpy(dtype=float)
+        named = _named(table.loc[np.isinf(means).any(axis=1), "design"].tolist())
+        names = ", ".join(infinite)
+        yield (
+            f"infinite means of {names}, as poses are singular: {named}; the table has medians "
+            "and quantiles"
+        )
+
+
+def _named(designs: list[str]) -> str:
+    more = f" and {len(designs) - MOST_NAMED} more" if len(designs) > MOST_NAMED else ""
+    return ", ".join(designs[:MOST_NAMED]) + more
 
 
 def best_table(table: pd.DataFrame) -> Table:
     """Return the best rows: the means of as many indices as fit into the terminal."""
-    by, names = table.attrs["by"], table.attrs["indices"]
+    by, names, keys = table.attrs["by"], table.attrs["indices"], keys_of(table)
     width = max(len(str(d)) for d in table["design"][:BEST])
     fit = max(1, (stdout().width - width - 30) // INDEX_WIDTH)
     shown = [by, *(name for name in names if name != by)][:fit]
     headings = [f"{INDICES[n].symbol} {ARROWS[INDICES[n].better]}" for n in shown]
     shares = [name for name in SHARES if name in table]
     best = plain_table(
-        *KEYS,
+        *keys,
         *headings,
         *shares,
         title=f"Best by {by} (means; {ARROWS['higher']} higher, {ARROWS['lower']} lower is better)",
@@ -109,7 +128,7 @@ def best_table(table: pd.DataFrame) -> Table:
     )
     for row in table.head(BEST).to_dict("records"):
         means = [number(row[f"{name}_mean"]) for name in shown]
-        best.add_row(*(str(row[key]) for key in KEYS), *means, *(_share(row[s]) for s in shares))
+        best.add_row(*(str(row[key]) for key in keys), *means, *(_share(row[s]) for s in shares))
     return best
 
 

@@ -11,8 +11,8 @@ import typer
 from gsp.cli import interrupts
 from gsp.cli.outputs.console import Table, counted, number, plain_table, say, show_table, warn
 from gsp.cli.ranking.candidates import Candidates
-from gsp.cli.ranking.files import KEYS, outputs, save, stopped
-from gsp.cli.ranking.report import BEST, designs_text, facts_of
+from gsp.cli.ranking.files import keys_of, outputs, save, stopped
+from gsp.cli.ranking.report import BEST, designs_text, facts_of, infinite_note
 from gsp.exploration import Task, assess
 from gsp.exploration.demands import FORCE, TORQUE, is_loaded
 from gsp.exploration.proving import CLOSED, FOUND, PROVEN, proven
@@ -55,12 +55,12 @@ def rank_for_task(
         except KeyboardInterrupt:
             raise typer.Exit(stopped(files.parts, STORED)) from None
         without = without_score(table)
-        if without:
-            warn(without)
+        for line in [*([without] if without else []), *infinite_note(table)]:
+            warn(line)
         say(f"{designs_text(found)}, task {origin}", "bold")
-        show_table(best_by_score(table, KEYS[1:], task))
+        show_table(best_by_score(table, keys_of(table)[1:], task))
         if columns is None and files.table.suffix.lower() == ".tex":
-            columns = [*KEYS, *score_columns(table, task)]
+            columns = [*keys_of(table), *score_columns(table, task)]
         means = table[[f"{name}_mean" for name in task.indices]]
         if files.picture and not means.notna().any(axis=None):
             warn("no picture: no mean is defined")

@@ -30,7 +30,7 @@ from gsp.geometry.pose import PoseBox
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.proof.extremes import ENDS_TOLERANCE
-from gsp.ranking.order import attributes
+from gsp.ranking.comparison import attributes
 
 if TYPE_CHECKING:
     import pandas as pd

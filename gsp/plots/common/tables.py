@@ -11,7 +11,7 @@ import pandas as pd
 from gsp import arguments
 from gsp.checks import check_array, is_a, plain_text
 from gsp.errors import GspError, InvalidInput, brief, expected
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, Mask
 from gsp.indices import index_names
 from gsp.plots.common.style import plain, symbol_text
 
@@ -59,6 +59,13 @@ def chosen_indices(given: Iterable[str] | str, there: Sequence[str]) -> list[str
 def coordinates_of(table: pd.DataFrame, name: str) -> Array:
     """Return a column of coordinates as floats, or raise InvalidInput if one is not finite."""
     return check_array(f"table[{name!r}]", column(table, name), (None,))
+
+
+def driven(table: pd.DataFrame) -> Mask:
+    """Return which designs of a table have legs that are driven at the base."""
+    if "drives" not in table:
+        return np.zeros(len(table), dtype=bool)
+    return np.array([isinstance(text, str) and text != "" for text in table["drives"]])
 
 
 def index_label(table: pd.DataFrame, name: str) -> str:
