@@ -324,6 +324,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "PlanarPosture.wrench": {"actuator_forces": [1.0, 2.0, 3.0]},
     "PlanarDesign.with_origin": {"point": [1.0, 2.0]},
     "travels.travel": {"direction": [0, 0, 1, 0, 0, 0], "farthest": 1.0, "strokes": None},
+    "directional_stiffness": {"direction": [0, 0, 1]},
     "nearest_pose.nearest": {"limits": Limits(strokes=[[0, 500]] * 6)},
     "deviations.Deviations": {
         "base_points": 0.1, "platform_points": np.full((6, 3), 0.1), "base_directions": 0.01,

@@ -508,6 +508,15 @@ QUANTITIES = (
         scale=statics.block_scale, words=MATRIX_WORDS,
     ),
     Quantity(
+        name="statics.directional_stiffness", of=statics.directional, scale=statics.force_size,
+        rules={
+            "base_turn": CHANGES, "exchange": CHANGES, "mirror": CHANGES,
+            "platform_shift": CHANGES,
+            "unit": lambda value, given, other: value / other.unit,
+        },
+        words={"unit": "/ k"},
+    ),
+    Quantity(
         name="statics.pose_errors: covariance", of=statics.covariance, rules=_twist_rules(2),
         scale=statics.block_scale, words=MATRIX_WORDS,
     ),

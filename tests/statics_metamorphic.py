@@ -67,6 +67,19 @@ def compliance(given):
     return _regular(given, gsp.statics.compliance(given.design, given.pose, springs(given)))
 
 
+def directional(given):
+    """The stiffness along an oblique direction."""
+    values = gsp.statics.directional_stiffness(
+        given.design, given.pose, springs(given), [0.3, -0.4, 0.8]
+    )
+    return _regular(given, values)
+
+
+def force_size(expected, given, other):
+    """A stiffness loses digits by the condition number of the rows."""
+    return np.abs(expected) * np.minimum(condition(given), CONDITION)
+
+
 def covariance(given):
     """The covariance of errors of the pose."""
     return _regular(given, gsp.statics.pose_errors(given.posture, errors(given)).covariance)

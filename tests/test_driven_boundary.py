@@ -24,6 +24,7 @@ WORKS = MappingProxyType({
     "evaluations.evaluate": TABLES, "order.rank": TABLES, "feasibility.feasible": TABLES,
     "gradients.gradient": TABLES, "derivatives.sensitivities": TABLES,
     "stiffness_matrix.stiffness": TABLES, "stiffness_matrix.compliance": ROWS,
+    "stiffness_matrix.directional_stiffness": "here",
     "assessing.assess": "here", "tables.sweep": "here", "maps.index_map": "here",
     "accuracy.pose_errors": "here", "motion.instantaneous_motion": "here",
     "characteristic_length.characteristic_length": "here", "comparison.in_unit": ROWS,

@@ -2,7 +2,7 @@
 
 from gsp.statics.accuracy import PoseErrors, pose_errors
 from gsp.statics.screws import Eigenscrews, eigenscrews
-from gsp.statics.stiffness_matrix import compliance, stiffness
+from gsp.statics.stiffness_matrix import compliance, directional_stiffness, stiffness
 from gsp.statics.weights import Masses, gravity_wrench, holding_forces
 
 __all__ = [
@@ -10,6 +10,7 @@ __all__ = [
     "Masses",
     "PoseErrors",
     "compliance",
+    "directional_stiffness",
     "eigenscrews",
     "gravity_wrench",
     "holding_forces",

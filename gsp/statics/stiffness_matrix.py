@@ -12,7 +12,7 @@ from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices, full_rank, log_and_inverse, singular_values
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.model.posture.assembled import finite_rows
@@ -110,6 +110,77 @@ def compliance(
     relative = np.swapaxes(root, -1, -2) @ _change_by_preload(posture, preload) @ root
     inner = _inverse(np.eye(root.shape[-1]) - relative)
     return np.asarray(root @ inner @ np.swapaxes(root, -1, -2))
+
+
+def directional_stiffness(
+    design: Design,
+    pose: Pose,
+    k: ArrayLike,
+    direction: ArrayLike,
+    *,
+    preload: ArrayLike | None = None,
+) -> Array:
+    """Return the stiffness along a direction, 1/(nᵀ K⁻¹ n).
+
+    A force of unit size along n through the platform origin displaces that point by nᵀ K⁻¹ n along
+    n, while the platform is free to move across n and to turn. A direction of six numbers is a
+    wrench (force, moment) about the platform origin; it is divided by the size of its force, or of
+    its moment where there is no force, and the displacement is the one on which it does work.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (...) [unit of the design]
+    k : float, or (n,) or (..., n) array_like [force/unit of the design; force · unit/rad for A1]
+        Stiffness of the actuators, > 0.
+    direction : (3,), (6,), (..., 3) or (..., 6) array_like [1, the moment in units of length]
+        In base axes; not zero. Its size does not matter.
+    preload : (..., 6) array_like or None [force, force · unit of the design]
+        See `stiffness`.
+
+    Returns
+    -------
+    (...) array [force/unit; force · unit/rad for a moment without a force]
+        Positive without `preload`. NaN where `compliance` is.
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes, stiffnesses that are not positive, or a direction of zeros.
+
+    *Source: the definition; the compliance is that of `compliance`.*
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.hexapod(1.0, 0.4, 0.6, 0.4, 1.2)
+    >>> up = gsp.statics.directional_stiffness(d, d.home, 10.0, [0, 0, 1])
+    >>> bool(up > gsp.statics.directional_stiffness(d, d.home, 10.0, [1, 0, 0]))
+    True
+    """
+    wrench = _unit_wrench(direction)  # raises an error before anything is computed
+    matrix = compliance(design, pose, k, preload=preload)
+    shape = common_shape("direction", wrench.shape[:-1], matrix.shape[:-2])
+    wrench = np.broadcast_to(wrench, (*shape, 6))[..., None]
+    given = (np.swapaxes(wrench, -1, -2) @ matrix @ wrench)[..., 0, 0]
+    with np.errstate(divide="ignore"):
+        return np.asarray(1.0 / given)
+
+
+def _unit_wrench(direction: ArrayLike) -> Array:
+    """Return directions as wrenches (..., 6) whose force, or else whose moment, has unit size."""
+    given = bounded_array("direction", direction, (None,))
+    if given.shape[-1] not in (3, 6):
+        wanted = "shape (..., 3) or (..., 6)"
+        raise InvalidInput(expected("direction", wanted, f"shape {given.shape}"))
+    force, moment = given[..., :3], given[..., 3:]
+    turns = moment.shape[-1] > 0 and ~force.any(axis=-1, keepdims=True)
+    size = np.where(turns, norm(moment)[..., None], norm(force)[..., None])
+    if (size < 1.0 / LARGEST_NUMBER).any():
+        wanted = f"a direction of a size of at least {1.0 / LARGEST_NUMBER:g}"
+        raise InvalidInput(expected("direction", wanted, f"{float(size.min()):g}"))
+    zeros = np.zeros((*given.shape[:-1], 6 - given.shape[-1]))
+    return np.concatenate((given / size, zeros), axis=-1)
 
 
 def weighted_inverse(posture: Posture, weights: Array) -> Array:

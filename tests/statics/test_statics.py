@@ -86,6 +86,7 @@ def test_singular_and_undefined_postures_have_no_balance():
     assert np.isnan(posture.actuator_forces(np.ones(6))).all()
     assert np.isnan(gsp.statics.pose_errors(posture, 1.0).worst).all()
     assert np.isnan(gsp.statics.compliance(flat, posture.pose, 1.0)).all()
+    assert np.isnan(gsp.statics.directional_stiffness(flat, posture.pose, 1.0, [1, 0, 0])).all()
 
 
 def test_planar_forces_balance():
@@ -130,6 +131,50 @@ def test_stiffness_is_the_change_of_the_wrench_of_springs(design):
         whole = gsp.stiffness(design, pose, k, preload=load)
         product = gsp.statics.compliance(design, pose, k, preload=load) @ whole
         assert np.allclose(product * units / units[:, None], np.eye(6), atol=1e-8)
+
+
+@pytest.mark.parametrize("design", MIXED, ids=lambda d: d.name)
+def test_directional_stiffness_is_the_least_energy_of_a_unit_displacement(design):
+    """tᵀKt of the twist with n · t = 1 whose wrench is along n, which without preload is least."""
+    rng = np.random.default_rng(6)
+    size, batch = design.rms_radius, poses(design, rng)
+    k = rng.uniform(1.0, 2.0, 6) * np.where(design.angular, size**2, 1.0)
+    load = rng.normal(size=6) * np.repeat([0.01 * size, 0.01 * size**2], 3)
+    for n in (rng.normal(size=3), rng.normal(size=6) * np.repeat([1.0, size], 3),
+              [0, 0, 0, *rng.normal(size=3)]):  # fmt: skip
+        whole = np.concatenate((n, np.zeros(6 - len(n))))
+        whole /= np.linalg.norm(whole[:3] if whole[:3].any() else whole)
+        for preload in (None, load):
+            found = gsp.statics.directional_stiffness(design, batch, k, n, preload=preload)
+            scaled = np.repeat([size, 1.0], 3)  # twists in units of the design
+            matrices = gsp.stiffness(design, batch, k, preload=preload)
+            for value, matrix in zip(found, matrices, strict=True):
+                border = np.zeros((7, 7))
+                border[:6, :6] = matrix * np.outer(scaled, scaled)
+                border[:6, 6] = border[6, :6] = whole * scaled
+                twist = np.linalg.solve(border, np.eye(7)[6])[:6]
+                assert value == pytest.approx(twist @ border[:6, :6] @ twist, rel=1e-8)
+
+
+def test_directional_stiffness_of_the_cube_is_that_of_its_springs():
+    """Two of the six edges along each of three directions across each other: 2 k everywhere."""
+    design = gsp.catalogue.design("dehaeze-cubic-centred")
+    for n in ([1, 0, 0], [0, 1, 0], [0, 0, 1], [1, -2, 3], [0, 0, -1e-50], [0, 1e90, 0]):
+        found = gsp.statics.directional_stiffness(design, design.home, 5.0, n)
+        assert found == pytest.approx(10.0, rel=1e-12)
+    rows = gsp.statics.directional_stiffness(design, design.home, 5.0, np.eye(3))
+    assert rows == pytest.approx([10.0] * 3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "wrong", [[0, 0, 0], [0] * 6, [1, 0], 1.0, [1, 0, 0, 0], "z", [np.nan, 0, 1], [1e-120, 0, 0],
+              [[1, 0, 0]] * 2, [1e101, 0, 0], None]
+)  # fmt: skip
+def test_directions_that_are_none_are_errors(wrong):
+    design = gsp.catalogue.design("dehaeze-cubic-centred")
+    pose = gsp.Pose(design.home.position + np.zeros((3, 3)))
+    with pytest.raises(InvalidInput, match=r"direction.*: expected"):
+        gsp.statics.directional_stiffness(design, pose, 1.0, wrong)
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
