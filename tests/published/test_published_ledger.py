@@ -16,6 +16,7 @@ COUNTS = {
     **dict.fromkeys(
         (
             "BasicRobotics",
+            "CDPR2018",
             "CDSL2006",
             "Cheers2021",
             "Dehaeze2020",
