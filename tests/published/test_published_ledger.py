@@ -24,6 +24,7 @@ COUNTS = {
             "LinuxCNC",
             "MCL745",
             "Martyushev2025",
+            "MdxMotion",
             "MirrorCtrl",
             "Rubin",
             "Viso",
