@@ -120,9 +120,13 @@ def tried(record, key, values):
     return [value for value in found if value is not None]
 
 
-@pytest.mark.parametrize(
-    ("record", "key"), drawn([(r, k) for r, k in INPUTS if k not in r.invariant], 80)
-)
+def matters(record, key):
+    """Whether another input must make the verdict fall: all angles of horns are printed as 0."""
+    zero = key == "joint" and str(record.printed) == "0"
+    return key not in record.invariant and not zero
+
+
+@pytest.mark.parametrize(("record", "key"), drawn([(r, k) for r, k in INPUTS if matters(r, k)], 80))
 def test_the_verdict_falls_if_an_input_is_changed(record, key):
     values = changes(record.arguments[key], key)
     done = False
