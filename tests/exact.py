@@ -104,6 +104,7 @@ def reviewed(design, pose, length, corners):
         growth = np.array([row[:3] @ arm for row, arm in zip(plain, arms, strict=True)])
         omega = (inverse(plain) @ growth)[3:]
         forces = inverse(homogeneous).T
+        compliance = inverse(rows.T @ rows)
         return {
             "condition_number_plain": condition(one, plain @ shift),
             "condition_number_points": condition(metric, rows),
@@ -114,6 +115,7 @@ def reviewed(design, pose, length, corners):
             "manipulability": abs(mpmath.det(mpmath.matrix(plain))),
             "greatest_force": max(mpmath.sqrt(column @ column) for column in forces),
             "rigidity_rate": mpmath.atan(1 / mpmath.sqrt(omega @ omega)),
+            **{f"stiffness_{'xyz'[i]}": 1 / compliance[i, i] for i in range(3)},
         }
 
 

@@ -106,6 +106,11 @@ def _index_scale(index):
             "minimum_singular_value": one * size / given.length,
             "complex_deviation_rotation": one * size * other.unit,
             "rigidity_rate": _condition(given),
+            **dict.fromkeys(
+                ("stiffness_x", "stiffness_y", "stiffness_z"),
+                # At most the number of actuators; as φ it can be large up to a singular posture.
+                _condition(given) * len(given.rows),
+            ),
             # Its margins for rounding are 256 units of every term.
             "singularity_distance": 256.0 * _condition(given) * size * other.unit,
         }.get(index.name, one)

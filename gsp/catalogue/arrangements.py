@@ -26,8 +26,9 @@ def placements(
     """Return all distinct ways to put the legs of a mechanism on the positions of a template.
 
     Two ways are the same if a symmetry of the template moves one onto the other; then all indices
-    have the same values at corresponding poses (see `symmetries`). Where the template has more
-    positions than the mechanism has legs, all choices of positions are among them.
+    but the stiffness along axes of the base have the same values at corresponding poses (see
+    `symmetries`). Where the template has more positions than the mechanism has legs, all choices of
+    positions are among them.
 
     Parameters
     ----------

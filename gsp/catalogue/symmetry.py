@@ -46,7 +46,7 @@ def symmetries(
     order have the same joint values at the pose g T k⁻¹ as the others at T (angles θ between lines
     may become π − θ). Lines that the template does not have are those of `instantiate`. k leaves
     the platform origin and the ellipsoid of the template in place, so the values of all indices
-    agree as well.
+    agree as well, but for the stiffness along axes of the base: g turns the axes.
 
     Both isometries are motions, or both are reflections. A reflection by Q makes Q v of the
     velocity v and −Q ω of the angular velocity ω: a row [u, r × u] of the Jacobian becomes

@@ -15,6 +15,7 @@ from gsp.indices.linear_complex import (
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.rigidity import rigidity_rate
 from gsp.indices.singularity import singularity_distance
+from gsp.indices.stiffness import stiffness_x, stiffness_y, stiffness_z
 from gsp.indices.table import INDICES, index_name, index_names
 
 __all__ = [
@@ -40,4 +41,7 @@ __all__ = [
     "quality_index",
     "rigidity_rate",
     "singularity_distance",
+    "stiffness_x",
+    "stiffness_y",
+    "stiffness_z",
 ]

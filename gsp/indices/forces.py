@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from gsp import arguments
-from gsp.geometry.matrices import defined_matrices, full_rank, log_and_inverse
+from gsp.geometry.matrices import defined_matrices, full_rank
 from gsp.geometry.vectors import Array
 from gsp.indices.record import AT_PLATFORM_ORIGIN, Index, Properties
 from gsp.indices.requirements import require_posture, with_singular_drives
-from gsp.indices.spectra import REPEATED_GAP, shared_slope
+from gsp.indices.spectra import REPEATED_GAP, inverse_and_slopes, shared_slope
 from gsp.model.posture import Posture
 from gsp.model.posture.slopes import Slopes
 
@@ -65,13 +65,11 @@ def greatest_force(posture: Posture, length: float) -> Array:
 def _slope(slopes: Slopes, length: float) -> Array:
     """Return the derivative of the greatest norm of a column of J⁺.
 
-    dJ⁺ = −J⁺ dJ J⁺ + J⁺ J⁺ᵀ dJᵀ (1 − J J⁺), and actuators with equal forces need equal slopes.
+    Actuators with equal forces need equal slopes.
     """
-    rows, rates = slopes.posture.homogeneous(length), slopes.homogeneous(length)
-    inverse = log_and_inverse(rows)[1][..., None, :, :]
-    rest = np.eye(rows.shape[-2]) - rows[..., None, :, :] @ inverse
-    turned = inverse @ np.swapaxes(inverse, -1, -2) @ np.swapaxes(rates, -1, -2) @ rest
-    moved = turned - inverse @ rates @ inverse
+    rows = slopes.posture.homogeneous(length)
+    whole, moved = inverse_and_slopes(rows, slopes.homogeneous(length))
+    inverse = whole[..., None, :, :]
     norms = np.linalg.norm(inverse, axis=-2)
     with np.errstate(invalid="ignore", divide="ignore"):
         each = (inverse * moved).sum(axis=-2) / norms

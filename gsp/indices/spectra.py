@@ -1,4 +1,4 @@
-"""Derivatives of the extreme singular values of small matrices, also where they are repeated."""
+"""Derivatives of extreme singular values, also where they are repeated, and of inverses."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from gsp.geometry.matrices import (
     defined_matrices,
     full_rank,
+    log_and_inverse,
     solve_right_triangular,
     triangular_root,
 )
@@ -133,3 +134,25 @@ def whitened_extremes(matrix: Array, root: Array, slopes: Array, root_slopes: Ar
         inner = (inner + np.swapaxes(inner, -1, -2)) / 2.0
         outer = np.swapaxes(left, -1, -2)[..., None, :, :] @ slopes @ x
         return of_block(values, outer - values[..., None, :, None] * inner)
+
+
+def inverse_and_slopes(rows: Array, rates: Array) -> tuple[Array, Array]:
+    """Return the (pseudo-)inverse of a Jacobian, and its derivatives along k directions.
+
+    dJ⁺ = −J⁺ dJ J⁺ + J⁺ J⁺ᵀ dJᵀ (1 − J J⁺), for J of full rank.
+
+    Parameters
+    ----------
+    rows : (..., n, 6) array, n ≥ 6
+    rates : (..., k, n, 6) array
+
+    Returns
+    -------
+    (..., 6, n) and (..., k, 6, n) arrays
+        Numbers without a meaning where J does not have full rank.
+    """
+    inverse = log_and_inverse(rows)[1]
+    each = inverse[..., None, :, :]
+    rest = np.eye(rows.shape[-2]) - rows[..., None, :, :] @ each
+    turned = each @ np.swapaxes(each, -1, -2) @ np.swapaxes(rates, -1, -2) @ rest
+    return inverse, np.asarray(turned - each @ rates @ each)

@@ -21,6 +21,7 @@ from gsp.indices.linear_complex import (
 )
 from gsp.indices.rigidity import RIGIDITY_RATE
 from gsp.indices.singularity import SINGULARITY_DISTANCE
+from gsp.indices.stiffness import STIFFNESS_X, STIFFNESS_Y, STIFFNESS_Z
 
 INDICES = MappingProxyType(
     {
@@ -40,6 +41,9 @@ INDICES = MappingProxyType(
             SINGULARITY_DISTANCE,
             GREATEST_FORCE,
             LOCAL_CONDITIONING,
+            STIFFNESS_X,
+            STIFFNESS_Y,
+            STIFFNESS_Z,
         )
     }
 )

@@ -1,5 +1,6 @@
 """Records of indices reject facts that cannot be."""
 
+import pickle
 from dataclasses import replace
 
 import pytest
@@ -62,3 +63,9 @@ def test_an_index_that_is_a_share_is_another_one_over_the_maximum():
         whole = INDICES[index.share_of].function(posture)
         assert index.function(posture, maximum=5.0) == pytest.approx(whole / 5.0, rel=1e-14)
         assert INDICES[index.share_of].of_determinant == index.of_determinant
+
+
+def test_a_pickled_index_is_equal():
+    """Also its functions: workers in other processes get records so."""
+    for index in INDICES.values():
+        assert pickle.loads(pickle.dumps(index)) == index

@@ -169,6 +169,18 @@ def seen_rigidity(p):
     return np.arctan2(1.0, np.linalg.norm(motion[3:]))
 
 
+def seen_stiffness(axis):
+    """Least sum of the squared leg rates over motions of unit speed along an axis of the base."""
+
+    def least(p):
+        rates = by_differences(p, lambda q: q.joints)
+        others = np.delete(rates, axis, axis=1)
+        rest = np.linalg.lstsq(others, -rates[:, axis], rcond=None)[0]
+        return ((rates[:, axis] + others @ rest) ** 2).sum()
+
+    return least
+
+
 def seen_conditioning(p, length):
     return 1.0 / seen_condition_number(p, length)
 
@@ -183,6 +195,7 @@ FROM_MOTIONS = {
     "complex_deviation_rotation": (seen_rotation, 1e-6),
     "complex_deviation_translation": (seen_translation, 2e-3),
     "rigidity_rate": (seen_rigidity, 1e-6),
+    **{f"stiffness_{'xyz'[i]}": (seen_stiffness(i), 1e-6) for i in range(3)},
 }
 
 

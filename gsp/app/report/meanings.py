@@ -29,5 +29,12 @@ _MEANINGS = {
         "1/CDN_CL; its mean in tables is the global conditioning index GCI, in which a singular "
         "pose counts as 0"
     ),
+    **{
+        f"stiffness_{axis}": (
+            f"the stiffness along {axis} of the base, 1/(nᵀ K⁻¹ n), for actuators of stiffness 1 "
+            "(of angles L²) and a force through the platform origin"
+        )
+        for axis in "xyz"
+    },
 }
 MEANINGS: Mapping[str, str] = MappingProxyType(_MEANINGS)
