@@ -18,7 +18,6 @@ from gsp.kinematics.modes.equations import (
     coordinates,
     distinct,
     linear,
-    normal,
     refined,
 )
 from gsp.kinematics.modes.starts import (
@@ -51,8 +50,10 @@ NEARLY_REGULAR_SHARE = 1e-4
 # Other general systems from which paths are followed if those of the first are lost or diverge, and
 # how many random ones are tried for each.
 OTHER_SYSTEMS, OTHER_ATTEMPTS, OTHER_SEED = 6, 4, 40
-# Step along a possible motion, and Newton steps back to the solutions.
-MOTION_STEP, RETURN_STEPS = 1e-2, 20
+# Step along a possible motion, how many are tried from each pose, Newton steps back to the
+# solutions, and their largest residual there, as a share of the size of the pose; the least norm of
+# the real part of a quaternion that counts.
+MOTION_STEP, MOTION_TRIES, RETURN_STEPS, MOTION_RESIDUAL, LEAST_REAL = 1e-2, 4, 20, 1e-12, 1e-3
 # Residual below which a singular pose is a solution.
 SINGULAR_RESIDUAL = 1e-9
 # Imaginary part below which a pose may be real, and how far Newton's method may move it then.
@@ -80,7 +81,7 @@ class Ends:
         Solutions that were found beyond the number of paths; the number of the general system is
         wrong if there are any.
     moving : bool
-        Whether a multiple solution lies on a curve of solutions.
+        Whether a curve of real solutions passes near a multiple one.
     """
 
     poses: Complex
@@ -193,7 +194,7 @@ def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: 
         at_infinity=infinite,
         lost=max(total - known - infinite, 0),
         excess=max(known - total, 0),
-        moving=bool(moves(layout, parameters, clusters).any()),
+        moving=len(clusters) > 0 and moves(layout, parameters, clusters),
     )
 
 
@@ -286,37 +287,35 @@ def returned(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Compl
     return poses, np.asarray(np.abs(error).max(axis=1, initial=0.0)), np.asarray(values)
 
 
-def moves(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
-    """Whether singular solutions (m, 7) lie on curves of solutions, (m,).
+def moves(layout: Layout, parameters: Complex, poses: Complex) -> bool:
+    """Whether a curve of real solutions passes near one of singular solutions (m, 7).
 
-    A step along the kernel is taken, and Newton's method with least steps leads back to solutions:
-    to the same one if it is isolated, and to one that is singular again if it is not. All of them
-    are computed together: degenerate joint values have hundreds of singular solutions.
+    Newton's method with least steps leads from their real parts to real solutions. From these a
+    step along the kernel is taken, and Newton's method leads back to solutions: to the same one if
+    it is isolated, and to one that is singular again if it is not. All of them are computed
+    together: degenerate joint values have hundreds of singular solutions.
     """
-    if not len(poses):
-        return np.zeros(0, dtype=bool)
-    here, error, spread = returned(layout, parameters, poses)
+    here = poses.real.astype(np.complex128)
+    here[:, :4] /= np.maximum(np.linalg.norm(here[:, :4], axis=1, keepdims=True), LEAST_REAL)
+    here, error, spread = returned(layout, parameters, here)
     rank = (spread > NEARLY_REGULAR_SHARE * spread[:, :1]).sum(axis=1)
-    chosen = np.flatnonzero((error < SINGULAR_RESIDUAL) & (rank < 7))
+    chosen = np.flatnonzero((error < MOTION_RESIDUAL * _size(here)) & (rank < 7))
     if not chosen.size:
-        return np.zeros(len(poses), dtype=bool)
-    here, rank = here[chosen], rank[chosen]
-    kernels = np.linalg.svd(linear(layout, parameters, here)[1])[2].conj()
-    step = np.array([_along(kernel[r:]) for kernel, r in zip(kernels, rank, strict=True)])
-    poses_after, error, spread = returned(layout, parameters, here + step)
-    apart = np.linalg.norm(poses_after - here, axis=1)
-    moving = np.zeros(len(poses), dtype=bool)
-    moving[chosen] = (
-        (error < SINGULAR_RESIDUAL)
-        & (apart > 0.3 * MOTION_STEP)
-        & (spread[:, -1] < 1e-6 * spread[:, 0])
-    )
-    return moving
+        return False
+    tried = np.repeat(chosen, MOTION_TRIES)
+    here, rank = here[tried], rank[tried]
+    kernels = np.linalg.svd(linear(layout, parameters, here)[1].real)[2]
+    rng = np.random.default_rng(0)
+    step = [_along(kernel[r:], rng) for kernel, r in zip(kernels, rank, strict=True)]
+    there, error, spread = returned(layout, parameters, here + np.array(step))
+    solutions = error < MOTION_RESIDUAL * _size(there)
+    apart = np.linalg.norm(there - here, axis=1) > 0.3 * MOTION_STEP
+    return bool((solutions & apart & (spread[:, -1] < 1e-6 * spread[:, 0])).any())
 
 
-def _along(kernel: Complex) -> Complex:
+def _along(kernel: Array, rng: np.random.Generator) -> Array:
     """Return a step within a kernel, whose rows (k, 7) are mixed."""
-    mixed = normal(np.random.default_rng(0), len(kernel)) @ kernel
+    mixed = rng.standard_normal(len(kernel)) @ kernel
     return np.asarray(MOTION_STEP * mixed / np.linalg.norm(mixed))
 
 

@@ -42,8 +42,9 @@ def contradict(design: Design, joints: Array) -> bool:
     one, other = joints[:, None], joints
     from_point = layout.kinds == NUMBER["D1"]
     both = from_point[:, None] & from_point
-    too_long = _exceeds(one, other + base + platform) & ~layout.angular[:, None] & from_point
-    apart = _exceeds(base, one + other + platform) | _exceeds(platform, one + other + base)
+    with np.errstate(over="ignore"):
+        too_long = _exceeds(one, other + base + platform) & ~layout.angular[:, None] & from_point
+        apart = _exceeds(base, one + other + platform) | _exceeds(platform, one + other + base)
     return bool((too_long | (apart & both)).any())
 
 
