@@ -9,8 +9,9 @@ its base line on which a CCC leg is.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -122,6 +123,47 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
         raise InvalidInput(expected("pose", "a single pose", f"a batch of shape {pose.shape}"))
     posture.check_defined()
     return tuple(_chain(posture, i) for i in range(design.n_legs))
+
+
+class Span(NamedTuple):
+    """What a leg passes through at several poses [unit of the design].
+
+    Attributes
+    ----------
+    longest : float
+        Greatest distance of its feet.
+    base, platform : (2,) tuple of float
+        Least and greatest displacement along the line of its base and platform joint; zeros where
+        there is none.
+    """
+
+    longest: float
+    base: tuple[float, float]
+    platform: tuple[float, float]
+
+
+def spans(legs: Sequence[Sequence[Chain]]) -> tuple[Span, ...]:
+    """Return the span of each leg over poses.
+
+    Parameters
+    ----------
+    legs : sequence of sequence of Chain
+        Those of `linkage` at each pose.
+
+    Returns
+    -------
+    tuple of Span
+    """
+    found = []
+    for chains in zip(*legs, strict=True):
+        ends = [(0.0, 0.0), (0.0, 0.0)]
+        lines = chains[0].leg.base_line, chains[0].leg.platform_line
+        for k, joints in enumerate(((c.base for c in chains), (c.platform for c in chains))):
+            if lines[k]:
+                values = [float(joint[0].value) for joint in joints]
+                ends[k] = (min(values), max(values))
+        found.append(Span(max(chain.length for chain in chains), *ends))
+    return tuple(found)
 
 
 def _chain(posture: Posture, i: int) -> Chain:

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from gsp import arguments
-from gsp.bridges.linkage import Chain, X, linkage
+from gsp.bridges.linkage import Chain, Span, X, linkage, spans
 from gsp.bridges.shapes import Body, Capsule
 from gsp.checks import check_positive, is_a
 from gsp.errors import InvalidInput, MissingParameter, apart, expected
@@ -107,7 +107,10 @@ def check_solids(solids: Solids | None) -> Solids:
 
 
 def capsules(
-    design: Design, chains: Sequence[Chain], solids: Solids | None = None
+    design: Design,
+    chains: Sequence[Chain],
+    solids: Solids | None = None,
+    over: Sequence[Span] | None = None,
 ) -> Mapping[str, tuple[Capsule, ...]]:
     """Return the capsules of "base", "platform", "leg1_lower", "leg1_upper", "leg1_rail" ….
 
@@ -123,6 +126,10 @@ def capsules(
         Those of `linkage`.
     solids : Solids or None
         Sizes and masses; default thin aluminium.
+    over : sequence of Span or None
+        Those of `spans` over the poses of a film. Rails hold the feet at all of them, and the links
+        of a leg have lengths that meet at all of them, but are never longer than the leg at the
+        pose of `chains`. Default: that pose alone.
 
     Returns
     -------
@@ -144,14 +151,16 @@ def capsules(
     stock = _Stock(
         size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass
     )
+    over = spans([chains]) if over is None else over
+    legs = list(zip(chains, over, strict=True))
     base = [stock.rod(start, end) for start, end in _plate(design.base_points)]
-    base += [stock.base_rail(chain) for chain in chains if chain.leg.base_line]
+    base += [stock.base_rail(chain, span) for chain, span in legs if chain.leg.base_line]
     plate = [stock.rod(start, end) for start, end in _plate(design.platform_points)]
     if stuff.platform_mass is not None:
         plate = [replace(rod, mass=stuff.platform_mass / len(plate)) for rod in plate]
     bodies = {"base": tuple(base), "platform": tuple(plate), "split": (stock.ball(SPLIT_SHARE),)}
-    for chain in chains:
-        bodies |= stock.links(chain)
+    for chain, span in legs:
+        bodies |= stock.links(chain, span)
     return MappingProxyType(bodies)
 
 
@@ -172,16 +181,17 @@ class _Stock:
         volume = np.pi * r**2 * (float(norm(end - start)) + 4.0 / 3.0 * r)
         return Capsule(start, end, r, float(self.weight * volume) if mass is None else mass)
 
-    def links(self, chain: Chain) -> dict[str, tuple[Capsule, ...]]:
+    def links(self, chain: Chain, span: Span) -> dict[str, tuple[Capsule, ...]]:
         """Make the two links of a leg, and its rail or ball on the platform."""
-        reach = chain.middle[0].axis * max(OVERLAP_SHARE * chain.length, 2.0 * self.radius)
+        length = min(OVERLAP_SHARE * span.longest, chain.length)
+        reach = chain.middle[0].axis * max(length, 2.0 * self.radius)
         zero, mass = np.zeros(3), self.link_mass
         parts: dict[str, tuple[Capsule, ...]] = {
             f"{chain.name}_lower": (self.rod(zero, reach, mass=mass),),
             f"{chain.name}_upper": (self.rod(-reach, zero, 0.6, mass),),
         }
         if chain.leg.platform_line:
-            start, end = _rail(float(chain.platform[0].value), self.size)
+            start, end = _rail(span.platform, self.size)
             parts[f"{chain.name}_rail"] = (self.rod(start, end, 0.5),)
         else:
             parts[f"{chain.name}_ball"] = (self.ball(),)
@@ -192,16 +202,16 @@ class _Stock:
         natural = self.rod(np.zeros(3), np.zeros(3))
         return replace(natural, mass=share * natural.mass)
 
-    def base_rail(self, chain: Chain) -> Capsule:
+    def base_rail(self, chain: Chain, span: Span) -> Capsule:
         """Make the rail of a leg on the base, in base axes."""
-        start, end = _rail(float(chain.base[0].value), self.size)
+        start, end = _rail(span.base, self.size)
         turn, origin = chain.foot.rotation, chain.foot.position
         return self.rod(origin + turn @ start, origin + turn @ end, 0.5)
 
 
-def _rail(value: float, size: float) -> tuple[Array, Array]:
-    """Return the ends of a rail that holds the anchor and the foot, and some length to slide."""
-    return X * (min(0.0, value) - 0.3 * size), X * (max(0.0, value) + 0.3 * size)
+def _rail(feet: tuple[float, float], size: float) -> tuple[Array, Array]:
+    """Return the ends of a rail that holds the anchor and the feet, and some length to slide."""
+    return X * (min(0.0, feet[0]) - 0.3 * size), X * (max(0.0, feet[1]) + 0.3 * size)
 
 
 def _plate(points: Array) -> list[tuple[Array, Array]]:

@@ -55,6 +55,16 @@ blue = ((pictures[..., 2].astype(int) - pictures[..., 0]) > 30).sum(axis=(1, 2))
 assert (blue > 100).all(), blue
 edge = np.concatenate([pictures[:, [0, -1]].ravel(), pictures[:, :, [0, -1]].ravel()])
 assert (edge > 200).all(), "the mechanism is cut at the edge"
+def spread(pictures):
+    ink = (pictures.min(axis=-1) < 200).any(axis=0)
+    places = [np.flatnonzero(ink.any(axis=k)) for k in (0, 1)]
+    return max(np.ptp(places[k]) / ink.shape[1 - k] for k in (0, 1))
+away = lift.with_origin([20.0, 0.0, 0.0])
+swing = gsp.sweeps.turn(away.home, "z", [-30.0, 30.0])
+for shown in (pictures, gsp.bridges.render_motion(away, swing.pose, width=160, height=120)):
+    assert spread(shown) > 0.85, spread(shown)
+still = [gsp.bridges.render(d, d.home, width=160, height=120).astype(int) for d in (lift, away)]
+assert np.abs(still[0] - still[1]).mean() < 1.0, "the origin of the platform changes the picture"
 one = gsp.bridges.render(lift, lift.home, width=160, height=120)
 assert one.shape == (120, 160, 3)
 """

@@ -8,16 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp import arguments
-from gsp.bridges.linkage import linkage
-from gsp.bridges.mujoco.elements import LARGEST_PICTURE, configuration
-from gsp.bridges.mujoco.mjcf import to_mjcf
-from gsp.bridges.mujoco.simulation import compiled, load_mujoco
-from gsp.bridges.solids import Solids, check_solids
+from gsp.bridges.mujoco.camera import fit
+from gsp.bridges.mujoco.elements import LARGEST_PICTURE
+from gsp.bridges.mujoco.scene import Scene
+from gsp.bridges.mujoco.simulation import load_mujoco
+from gsp.bridges.solids import Solids
 from gsp.checks import check_memory, check_type
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import norm
 from gsp.model.design import Design
+
+# Of the diagonal of the box of all anchors: how far beyond it a part may be that the camera shows.
+SHOWN_AROUND = 0.5
 
 # Why MuJoCo had no OpenGL in this process. It chooses one when it is imported, and a second try
 # after a failure ends the process.
@@ -78,8 +81,10 @@ def render_motion(
 ) -> NDArray[np.uint8]:
     """Return pictures of a design at poses, by one model and one camera: (n, height, width, 3).
 
-    The model is that of the pose at which no leg is much shorter than it becomes, and its joints
-    are set to their values at each pose, so that links keep their lengths.
+    The model is that of the first pose, and its joints are set to their values at each pose. Each
+    of the two links of a leg has 0.6 of the leg's greatest length over the poses, so that they meet
+    at every pose; where the leg is shorter than that, they have its length. Rails hold the feet at
+    all poses. The camera stands as near as it can to see the mechanism at all poses.
 
     Parameters
     ----------
@@ -128,31 +133,44 @@ def _pictures(
     ]
     check_memory("poses", poses.size, 3 * size[0] * size[1], "pictures")
     mujoco = load_mujoco()
-    unit = check_solids(solids).unit(design)
-    legs = [linkage(design, poses[i]) for i in range(poses.size)]
-    # Of the model; at another pose a leg may be longer, and beyond 1.2 times there is a gap
-    # between its two links.
-    lengths = np.array([[chain.length for chain in chains] for chains in legs])
-    start = int((lengths / lengths.max(axis=0)).min(axis=1).argmax())
-    model = compiled(to_mjcf(design, poses[start], solids))
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    renderer = _renderer(mujoco, model, size)
+    scene = Scene(design, poses, solids)
     camera = mujoco.MjvCamera()
-    camera.lookat[:] = model.stat.center
-    # The extent is the diameter of a sphere around all bodies, which fits a little below this.
-    moved = float(norm(poses.position - poses.position[start]).max()) * unit
-    camera.distance = 1.2 * (model.stat.extent + 3.0 * moved)
     camera.azimuth, camera.elevation = view
+    _aim(camera, scene, size[1] / size[0])
     pictures = np.empty((poses.size, *size, 3), dtype=np.uint8)
-    with renderer:
+    with _renderer(mujoco, scene.model, size) as renderer:
         for i, picture in enumerate(pictures):
-            data.qpos[:] = configuration(legs[start], legs[i], poses[i], unit)
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_camlight(model, data)
-            renderer.update_scene(data, camera)
+            scene.show(i)
+            renderer.update_scene(scene.data, camera)
             picture[:] = renderer.render()
     return pictures
+
+
+def _aim(camera: Any, scene: Scene, aspect: float) -> None:
+    """Place a camera and a light that see the scene at all of its poses.
+
+    Of parts that lie far from the anchors, such as the rails of lines that are nearly parallel,
+    only those in a box around the anchors count.
+    """
+    anchors, (centres, radii) = scene.anchors(), scene.balls()
+    low, high = anchors.min(axis=0), anchors.max(axis=0)
+    around = SHOWN_AROUND * float(norm(high - low))
+    if around > 0.0:
+        centres = np.clip(centres, low - around, high + around)
+    model = scene.model
+    fitted = fit(
+        centres,
+        radii,
+        azimuth=camera.azimuth,
+        elevation=camera.elevation,
+        field=float(model.vis.global_.fovy),
+        aspect=aspect,
+    )
+    camera.lookat[:], camera.distance = fitted
+    # MuJoCo draws what is between shares of this extent away from the camera.
+    model.stat.extent = fitted.distance
+    middle = (low + high) / 2.0
+    model.light_pos[0] = middle + np.array([0.0, 0.0, 2.0 * fitted.distance])
 
 
 def _renderer(mujoco: Any, model: Any, shape: list[int]) -> Any:
