@@ -148,7 +148,7 @@ def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
     'pose.position: expected shape (..., 3), received shape (2,)'
     """
     place = f" ({where})" if where else ""
-    text = _cut(got, LETTERS_PER_TEXT) if isinstance(got, str) else brief(got)
+    text = cut(got, LETTERS_PER_TEXT) if isinstance(got, str) else brief(got)
     return f"{what}{place}: expected {wanted}, received {text}"
 
 
@@ -205,7 +205,7 @@ def brief(value: object) -> str:
         text = f"a great {type(value).__name__}"
     except Exception:  # an object whose own `__repr__` fails
         text = f"an object of {type(value).__name__}"
-    return _cut(text)
+    return cut(text)
 
 
 # Levels of collections of which the first items alone are written, so that great ones take no time.
@@ -227,5 +227,10 @@ def _first(value: Any, levels: int = LEVELS_CUT) -> Any:
     return kind(_first(x, levels - 1) for x in islice(value, most))
 
 
-def _cut(text: str, most: int = LETTERS_PER_VALUE) -> str:
+def cut(text: str, most: int = LETTERS_PER_VALUE) -> str:
+    """Return a text, cut to so many characters, for a message.
+
+    >>> cut("9" * 5000, 10)
+    '9999999...'
+    """
     return text if len(text) <= most else text[: most - 3] + "..."

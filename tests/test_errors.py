@@ -147,3 +147,12 @@ def test_a_number_beyond_a_bound_does_not_look_equal_to_it():
     reason = gsp.feasible(design.replace(strokes=close), pose).reason
     value, bound = (float(x) for x in reason.split(";")[0].split(" = ")[1].split(" > "))
     assert value > bound
+
+
+def test_a_design_without_a_name_is_not_named():
+    lift = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    message = "condition_number: expected length=, received none"
+    for name, ending in (("lift", " (design 'lift')"), ("", "")):
+        with pytest.raises(errors.MissingParameter) as caught:
+            gsp.evaluate(lift.replace(name=name), lift.home, ["condition_number"])
+        assert str(caught.value) == message + ending

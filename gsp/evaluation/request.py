@@ -11,7 +11,7 @@ from typing import Any
 
 from gsp.arguments import flag
 from gsp.checks import check_integer, check_type, plain_text
-from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.evaluation.backends import Check, check_backend
 from gsp.evaluation.settings import Job, maximum_of_each, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -206,7 +206,6 @@ def choose_indices(
         index = INDICES[name]
         for design, settings in kinds.values():
             for need in index.missing(design, (*settings.given(), "maximum")):
-                raise MissingParameter(
-                    f"{index.missing_message(need, design)} (design {design.name!r})"
-                )
+                which = f" (design {brief(design.name)})" if design.name else ""
+                raise MissingParameter(index.missing_message(need, design) + which)
     return names, tuple(sought)

@@ -531,3 +531,29 @@ def test_legs_of_five_freedoms_and_offset_slides_are_refused(tmp_path):
     path.write_text(foreign_sdf(LIFT).replace("0 0 0.2 0 0 0", f"0.3 0 0.2 {math.pi / 2} 0 0"))
     with pytest.raises(MalformedFile, match=r"leg 1 .*expected"):
         read_model(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.urdf", "<robot name='a'><link name='{0}'/><link name='b'/><joint name='j' "
+         "type='fixed'><parent link='{0}'/><child link='{0}1'/></joint></robot>"),
+        ("a.urdf", "<robot><link name='a'/><joint name='{0}' type='{0}'><parent link='a'/>"
+         "<child link='a'/></joint></robot>"),
+        ("a.urdf", "<r{0}/>"),
+        ("a.sdf", "<sdf><model name='m'><link name='{0}'/><link name='{0}'/></model></sdf>"),
+        ("a.sdf", "<sdf><model name='m'><link name='a'><pose relative_to='{0}'/></link>"
+         "</model></sdf>"),
+        ("a.sdf", "<sdf><model name='m'><joint name='{0}' type='{0}'/></model></sdf>"),
+        ("a.xml", "<m{0}/>"),
+        ("a.json", '{{"{0}": 1, "{0}": 2}}'),
+        ("a.json", '{{"Actuators": {{"{0}": {{}}}}}}'),
+    ],
+)  # fmt: skip
+def test_names_are_cut_in_messages(name, text, tmp_path):
+    path = tmp_path / name
+    path.write_text(text.format("9" * 5000))
+    with pytest.raises(MalformedFile) as caught:
+        read_model(path)
+    assert len(caught.value.args[0]) < 800 + len(str(path))
+    assert "..." in caught.value.args[0] or "9" not in caught.value.args[0]

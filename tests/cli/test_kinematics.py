@@ -178,3 +178,15 @@ def test_many_undefined_poses_are_counted(gsp, tmp_path):
     result = gsp("forward", "lee-2000-3-3", "--joints", "log.csv")
     assert "gsp: undefined: row 1: d6: expected" in result.err
     assert "gsp: undefined: 4 such joint values more" in result.err
+
+
+def test_the_reason_of_an_undefined_joint_value_is_stated(gsp, tmp_path):
+    reason = "is undefined: crank and rod do not reach the platform anchor, or it is on the axis"
+    result = gsp("inverse", "lane-rotary", "--position", 0, 0, 0)
+    assert result.status == 0
+    assert result.err.splitlines() == [f"gsp: theta{i} {reason}" for i in range(1, 7)]
+    table = tmp_path / "poses.csv"
+    table.write_text("x,y,z,angle_1,angle_2,angle_3\n" + "0,0,0,0,0,0\n" * 2)
+    lines = gsp("inverse", "lane-rotary", "--poses", table).err.splitlines()
+    assert lines[0] == f"gsp: row 1: theta1 {reason}"
+    assert lines[-1] == "gsp: undefined: 6 joint values more"

@@ -160,6 +160,27 @@ def test_a_new_hexapod_from_questions(gsp, monkeypatch):
     assert next(answers, None) is None
 
 
+def test_a_number_is_no_unit(gsp, monkeypatch):
+    """Users answer the first question, that of the unit, with the radius."""
+    assert "--unit: expected the name of a unit" in gsp("new", *NUMBERS, "--unit", "2").error
+    answers = iter("2 2,5 1e3 mm 2 20 1 30 1.5 n".split())
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.prompt", lambda text, **_: next(answers))
+    monkeypatch.setattr("typer.confirm", lambda text, **_: next(answers) == "y")
+    result = gsp("new")
+    assert read_design("hexapod.toml").unit == "mm"
+    wanted = "gsp: answer: expected the name of a unit of length, such as mm, and no number"
+    said = [f"{wanted}, received {number!r}" for number in ("2", "2,5", "1e3")]
+    assert result.err.splitlines() == said
+
+
+def test_a_file_that_exists_is_refused_before_any_question(gsp, monkeypatch):
+    Path("old.toml").touch()
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.prompt", lambda text, **_: pytest.fail("a question"))
+    assert "old.toml: exists already" in gsp("new", "--out", "old.toml").error
+
+
 def test_wrong_answers_are_said_and_asked_again(gsp, monkeypatch):
     typed = "mm two -3 0 nan 2 200 -1 20 1 1e 30 0 1e101 1.5 y -1 1.5 1 inf 2.5"
     answers = iter(typed.split())

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from gsp.bridges.reading.linkages import NO_SHIFT, Freedom, Link, Linkage
-from gsp.errors import InvalidInput, UnknownName, expected
+from gsp.errors import InvalidInput, UnknownName, brief, cut, expected
 from gsp.geometry.pose import Pose
 
 LEAST_CHAINS = 3  # three legs of two actuators each
@@ -51,11 +51,13 @@ def find_platform(linkage: Linkage) -> str:
     most = max(counts.values(), default=0)
     best = [name for name, count in counts.items() if count == most]
     if most < LEAST_CHAINS:
-        wanted = f"a platform with at least {LEAST_CHAINS} chains of joints from {linkage.base!r}"
+        base = brief(linkage.base)
+        wanted = f"a platform with at least {LEAST_CHAINS} chains of joints from {base}"
         raise InvalidInput(expected("model", wanted, f"{most} at most"))
     if len(best) > 1:
         wanted = "one body to which most chains lead"
-        raise InvalidInput(expected("model", wanted, " and ".join(best), "name it as platform"))
+        named = " and ".join(map(cut, best))
+        raise InvalidInput(expected("model", wanted, named, "name it as platform"))
     return best[0]
 
 
@@ -132,10 +134,10 @@ def _walk(
             if link.name not in used and at in (groups[link.parent], groups[link.child])
         ]
         if len(ahead) != 1:
-            joints = ", ".join(repr(link.name) for link in ahead) or "none"
+            joints = ", ".join(brief(link.name) for link in ahead) or "none"
             wanted = "a chain of joints without branches"
             raise InvalidInput(
-                expected(f"leg at {sorted(bodies)[0]!r}", wanted, f"joints {joints}")
+                expected(f"leg at {brief(sorted(bodies)[0])}", wanted, f"joints {joints}")
             )
         backwards = groups[ahead[0].parent] != at
         steps.append(Step(ahead[0], backwards))

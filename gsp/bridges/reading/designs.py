@@ -7,7 +7,7 @@ import numpy as np
 from gsp.bridges.reading.chains import find_platform, paths
 from gsp.bridges.reading.legs import FoundLeg, anchors_on_platform, leg_of
 from gsp.bridges.reading.linkages import Linkage
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import norm
 from gsp.model.design import Design
@@ -41,7 +41,7 @@ def design_of(linkage: Linkage, name: str | None = None) -> Design:
     legs = [leg_of(chain, i + 1, size) for i, chain in enumerate(chains)]
     count = sum(len(leg.constraints.split()) for leg in legs)
     if count < FREEDOMS:
-        wanted = f"legs with at least {FREEDOMS} constraints between base and {platform!r}"
+        wanted = f"legs with at least {FREEDOMS} constraints between base and {brief(platform)}"
         raise InvalidInput(expected("model", wanted, f"{len(legs)} legs with {count}"))
     heads = [
         anchors_on_platform(leg.platform, chain.shift, place)

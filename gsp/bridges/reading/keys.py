@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 from gsp import arguments
 from gsp.checks import optional
-from gsp.errors import MalformedFile, brief, expected
+from gsp.errors import LETTERS_PER_TEXT, MalformedFile, brief, cut, expected
 from gsp.files.writing import read_text
 
 PACKAGE_BYTES = 10_000_000  # bytes
@@ -132,7 +132,7 @@ class Keys:
         while near and near not in lines:
             near = near[: max(near.rfind("."), near.rfind("["), 0)]
         line = f", line {lines[near]}" if near in lines else ""
-        named = f", key {where}" if where else ""
+        named = f", key {cut(where, LETTERS_PER_TEXT)}" if where else ""
         raise MalformedFile(expected(f"{self._source.path}{line}{named}", wanted, got))
 
 
@@ -155,7 +155,8 @@ def _joined(where: str, key: str) -> str:
 
 
 def _repeated(path: Path, line: int, key: str) -> MalformedFile:
-    return MalformedFile(expected(f"{path}, line {line}, key {key}", "each key once", "it again"))
+    place = f"{path}, line {line}, key {cut(key)}"
+    return MalformedFile(expected(place, "each key once", "it again"))
 
 
 def _integer(text: str) -> int | float:

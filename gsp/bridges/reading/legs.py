@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp.bridges.reading.chains import Path
 from gsp.bridges.reading.linkages import Freedom
-from gsp.errors import InvalidInput, expected
+from gsp.errors import LETTERS_PER_TEXT, InvalidInput, brief, cut, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm, unit
 
@@ -59,7 +59,7 @@ def leg_of(path: Path, number: int, size: float) -> FoundLeg:
         If the joints are not those of an SPS, SPC, CPS or CCC leg. Two or three turns whose axes
         meet count as S, a slide and a turn along one line as C.
     """
-    where = f"leg {number} (joints {path.names})"
+    where = f"leg {number} (joints {cut(path.names, LETTERS_PER_TEXT)})"
     count = sum(3 if x.kind == "ball" else 1 for x in path.freedoms)
     if count < LEAST_FREEDOMS:
         wanted = f"at least {LEAST_FREEDOMS} freedoms, with which a leg alone holds nothing"
@@ -69,7 +69,7 @@ def leg_of(path: Path, number: int, size: float) -> FoundLeg:
     middle = tuple(reversed(rest))
     kinds = sorted(x.kind for x in middle)
     if kinds not in (["slide"], ["slide", "turn"]):
-        got = ", ".join(f"{x.kind} {x.name!r}" for x in middle) or "none"
+        got = ", ".join(f"{x.kind} {brief(x.name)}" for x in middle) or "none"
         wanted = "one slide, or a slide and a turn along one axis, between the joints at its ends"
         raise InvalidInput(expected(where, wanted, got))
     slide = next(x for x in middle if x.kind == "slide")
@@ -149,7 +149,7 @@ def _end(
         point = _meeting(freedoms[:turns])
         if point is not None and _through(point, freedoms[:turns]) <= TOLERANCE * size:
             return End(point, NONE), tuple(freedoms[turns:])
-    got = ", ".join(f"{x.kind} {x.name!r}" for x in freedoms[:MANY_TURNS]) or "nothing"
+    got = ", ".join(f"{x.kind} {brief(x.name)}" for x in freedoms[:MANY_TURNS]) or "nothing"
     wanted = f"at the {side} a ball, turns whose axes meet, or a slide and a turn along one line"
     raise InvalidInput(expected(where, wanted, got))
 

@@ -12,7 +12,7 @@ from gsp.arguments import LARGEST_NUMBER
 from gsp.bridges.mujoco.simulation import load_mujoco
 from gsp.bridges.reading.linkages import Freedom, Link, Linkage
 from gsp.bridges.reading.xml_lines import Node, XmlFile
-from gsp.errors import MalformedFile, brief, expected
+from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -53,7 +53,7 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
     root = XmlFile(path).root
     if root.tag != "mujoco":
         wanted = "<mujoco>"
-        raise MalformedFile(expected(f"{path}, root element", wanted, f"<{root.tag}>"))
+        raise MalformedFile(expected(f"{path}, root element", wanted, f"<{cut(root.tag)}>"))
     _check_numbers(path, set())
     try:
         model = program.MjModel.from_xml_path(str(path))

@@ -10,6 +10,7 @@ import numpy as np
 from gsp.bridges.reading.beside import Beside, read_beside
 from gsp.bridges.reading.linkages import Freedom, Link, Linkage
 from gsp.bridges.reading.xml_lines import Node, XmlFile
+from gsp.errors import brief, cut
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
@@ -39,7 +40,7 @@ def read_sdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     if model is None:
         model = file.root.find("world/model")
     if file.root.tag != "sdf" or model is None:
-        file.fail(file.root, "", "<sdf> with a <model>", f"<{file.root.tag}> without one")
+        file.fail(file.root, "", "<sdf> with a <model>", f"<{cut(file.root.tag)}> without one")
     frames = _Frames(file, model)
     names = [file.attribute(link, "name") for link in model.iterfind("link")]
     places = {name: frames.place(name) for name in names}
@@ -68,7 +69,7 @@ class _Frames:
             for node in model.iterfind(tag):
                 name = file.attribute(node, "name")
                 if name in self._nodes:
-                    file.fail(node, "name", "a name of its own", repr(name))
+                    file.fail(node, "name", "a name of its own", brief(name))
                 self._nodes[name] = node
         self._known = {MODEL: Pose(np.zeros(3)), WORLD: Pose(np.zeros(3))}
         self._open: set[str] = set()
@@ -79,7 +80,7 @@ class _Frames:
             return self._known[name]
         if name not in self._nodes or name in self._open:
             node = asked if asked is not None else next(iter(self._nodes.values()))
-            got = repr(name) if name not in self._nodes else f"a ring of frames at {name!r}"
+            got = brief(name) if name not in self._nodes else f"a ring of frames at {brief(name)}"
             self._file.fail(node, "relative_to", "a link, joint or frame of the model", got)
         self._open.add(name)
         node = self._nodes[name]
@@ -103,7 +104,7 @@ class _Frames:
         for tag, name in zip(("parent", "child"), ends, strict=True):
             known = self._nodes.get(name)
             if name != WORLD and (known is None or known.tag != "link"):
-                self._file.fail(node, f"<{tag}>", "the name of a link of the model", repr(name))
+                self._file.fail(node, f"<{tag}>", "the name of a link of the model", brief(name))
         return ends
 
 
@@ -122,7 +123,7 @@ def freedoms_of(
     """Return the freedoms of a joint whose frame is at `place`."""
     kind, name = file.attribute(node, "type"), file.attribute(node, "name")
     if kind not in KINDS:
-        file.fail(node, "type", "one of " + ", ".join(KINDS), repr(kind))
+        file.fail(node, "type", "one of " + ", ".join(KINDS), brief(kind))
     found = []
     for motion, tag in KINDS[kind]:
         if motion == "ball":

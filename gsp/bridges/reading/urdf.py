@@ -12,7 +12,7 @@ from gsp.bridges.reading.beside import Beside, read_beside
 from gsp.bridges.reading.linkages import Freedom, Link, Linkage
 from gsp.bridges.reading.sdf import freedoms_of
 from gsp.bridges.reading.xml_lines import Node, XmlFile
-from gsp.errors import MalformedFile, expected
+from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.geometry.pose import Pose
 
 KINDS = {
@@ -37,7 +37,7 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     """
     file = XmlFile(path)
     if file.root.tag != "robot":
-        file.fail(file.root, "", "<robot>", f"<{file.root.tag}>")
+        file.fail(file.root, "", "<robot>", f"<{cut(file.root.tag)}>")
     names = [file.attribute(link, "name") for link in file.root.iterfind("link")]
     beside = read_beside(path.with_name(path.name + ".loops.json"))
     places, joints = _tree(file, names)
@@ -68,9 +68,9 @@ def _tree(file: XmlFile, names: list[str]) -> tuple[dict[str, Pose], list[Link]]
         ends = tuple(file.attribute(file.child(node, x), "link") for x in ("parent", "child"))
         for tag, name in zip(("parent", "child"), ends, strict=True):
             if name not in names:
-                file.fail(node, f"<{tag}> link", "the name of a link", repr(name))
+                file.fail(node, f"<{tag}> link", "the name of a link", brief(name))
         if ends[1] in nodes:
-            file.fail(node, "<child> link", "a link that is no child yet", repr(ends[1]))
+            file.fail(node, "<child> link", "a link that is no child yet", brief(ends[1]))
         nodes[ends[1]] = (node, ends[0])
     roots = [name for name in names if name not in nodes]
     if len(roots) != 1:
@@ -96,7 +96,7 @@ def _tree(file: XmlFile, names: list[str]) -> tuple[dict[str, Pose], list[Link]]
 def _joint(file: XmlFile, node: Node, parent: str, child: str, place: Pose) -> Link:
     name, kind = file.attribute(node, "name"), file.attribute(node, "type")
     if kind not in KINDS:
-        file.fail(node, "type", "one of " + ", ".join(KINDS), repr(kind))
+        file.fail(node, "type", "one of " + ", ".join(KINDS), brief(kind))
     freedoms = []
     for motion in KINDS[kind] or ():
         axis = node.find("axis")
@@ -142,8 +142,8 @@ def _loops(file: XmlFile, beside: Beside, places: Mapping[str, Pose]) -> Iterato
         for key, name in (("link_1", loop.link_1), ("link_2", loop.link_2)):
             if name not in places:
                 wanted = f"a link of {file.path.name}"
-                where = f"{beside.path}, loop {loop.name!r}, {key}"
-                raise MalformedFile(expected(where, wanted, repr(name)))
+                where = f"{beside.path}, loop {brief(loop.name)}, {key}"
+                raise MalformedFile(expected(where, wanted, brief(name)))
         there = places[loop.link_2].compose(loop.placement)
         shift = there.compose(places[loop.link_1].inverse())
         yield Link(name=f"loop {loop.name}", parent=loop.link_1, child=loop.link_2, shift=shift)
@@ -155,7 +155,7 @@ def _gazebo_loops(file: XmlFile, places: Mapping[str, Pose]) -> Iterator[Link]:
         ends = [file.text(node, tag) for tag in ("parent", "child")]
         for tag, name in zip(("parent", "child"), ends, strict=True):
             if name not in places:
-                file.fail(node, f"<{tag}>", "the name of a link", repr(name))
+                file.fail(node, f"<{tag}>", "the name of a link", brief(name))
         pose = node.find("pose")
         at = Pose(np.zeros(3)) if pose is None else file.placement(node, "<pose>", pose.text)
         place = places[ends[1]].compose(at)

@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from gsp.errors import MalformedFile, brief, expected
+from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.files.writing import read_text
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, unit
@@ -56,8 +56,8 @@ class XmlFile:
 
     def where(self, node: Node) -> str:
         """Return an element as messages name it: "line 3, <joint name='d1'>"."""
-        name = node.get("name")
-        named = f"<{node.tag}>" if name is None else f"<{node.tag} name={brief(name)}>"
+        name, tag = node.get("name"), cut(node.tag)
+        named = f"<{tag}>" if name is None else f"<{tag} name={brief(name)}>"
         return f"line {self._lines[node]}, {named}"
 
     def fail(self, node: Node, key: str, wanted: str, got: str) -> NoReturn:

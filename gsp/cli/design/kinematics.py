@@ -33,11 +33,12 @@ from gsp.geometry.vectors import Array
 from gsp.kinematics.forward_solution import ForwardSolution
 from gsp.kinematics.forward_solution import forward as solve
 from gsp.model.design import Design
+from gsp.model.posture import Posture
 
 if TYPE_CHECKING:
     import pandas as pd
 
-# Joint values that no joint can have are listed up to this number.
+# Joint values that no joint can have, or that poses do not have, are listed up to this number.
 MOST_REASONS = 5
 
 
@@ -166,9 +167,11 @@ def inverse(
         pose = Pose.from_angles(rows[:, :3], rows[:, 3:], order, degrees=True)
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")
-    table = inverse_table(found, pose, order)
+    posture = found.at(pose)
+    table = inverse_table(posture, order)
     say(f"{found.name}: joint values", "bold")
     print_rows(table, found.joint_names)
+    _warn_of_values(posture)
     _write(table, out, found, order, force=force)
 
 
@@ -210,13 +213,23 @@ def _warn_of_undefined(design: Design, joints: Array, guess: Pose, found: Forwar
         warn(f"undefined: {counted(len(wrong) - MOST_REASONS, 'such joint value')} more")
 
 
-def inverse_table(design: Design, pose: Pose, order: str) -> pd.DataFrame:
+def inverse_table(posture: Posture, order: str) -> pd.DataFrame:
     """Return one row per pose: the pose in degrees, and its joint values."""
     import pandas as pd
 
-    joints = np.atleast_2d(design.at(pose).joints)
-    names = design.joint_names
-    return pd.DataFrame({**pose_columns(pose, order), **dict(zip(names, joints.T, strict=True))})
+    joints, names = np.atleast_2d(posture.joints), posture.joint_names
+    poses = pose_columns(posture.pose, order)
+    return pd.DataFrame({**poses, **dict(zip(names, joints.T, strict=True))})
+
+
+def _warn_of_values(posture: Posture) -> None:
+    """State why joints have no value."""
+    lost, most = posture.undefined, max(MOST_REASONS, len(posture.joint_names))
+    for element in lost[:most]:
+        where = f"row {element.pose[0] + 1}: " if element.pose else ""
+        warn(f"{where}{element.joint} is undefined: {element.reason}")
+    if len(lost) > most:
+        warn(f"undefined: {counted(len(lost) - most, 'joint value')} more")
 
 
 def _fallback(text: str | None) -> Literal["modes"] | None:

@@ -24,6 +24,7 @@ from gsp.files.cells import number_of
 from gsp.files.names import file_stem
 from gsp.files.writing import check_writable
 from gsp.model.design import Design
+from gsp.model.units import check_unit
 
 
 class Arrangement(StrEnum):
@@ -120,6 +121,8 @@ def new(
     """
     if strokes is not None:
         _check_strokes(strokes)
+    if unit is not None:
+        _check_unit("--unit", unit)
     given = {
         "base_radius": base_radius,
         "base_angle": base_angle,
@@ -137,7 +140,7 @@ def new(
         for key, value in given.items():
             if value is not None:
                 QUESTIONS[key].check(f"--{key.replace('_', '-')}", value)
-        unit = _text("Unit of length", default="m") if unit is None else unit
+        unit = _unit() if unit is None else unit
     numbers = {
         key: _number(QUESTIONS[key]) if value is None else value for key, value in given.items()
     }
@@ -173,6 +176,26 @@ def _number(question: Question) -> float:
             warn(str(error))
             continue
         return value
+
+
+def _unit() -> str:
+    """Return the unit that is typed; what is none is said, and asked again."""
+    while True:
+        answer = _text("Unit of length, such as mm", default="m").strip()
+        try:
+            _check_unit("answer", answer)
+        except InvalidInput as error:
+            warn(str(error))
+            continue
+        return answer
+
+
+def _check_unit(what: str, text: str) -> None:
+    """Refuse a number, which is the answer to another question."""
+    check_unit(what, text)
+    if not isnan(number_of(text.replace(",", "."))):
+        wanted = "the name of a unit of length, such as mm, and no number"
+        raise InvalidInput(expected(what, wanted, brief(text)))
 
 
 def _text(question: str, **options: Any) -> str:

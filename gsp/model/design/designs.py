@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from gsp import arguments
 from gsp.checks import check_type, plain_text
-from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
+from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
 from gsp.files.writing import read_text
 from gsp.geometry.copies import kept_property
 from gsp.geometry.pose import Pose
@@ -169,7 +169,7 @@ class Design(AnchoredDesign[Pose]):
         check_columns(names, "frame")
         parameters = parameters_from_columns(
             {column: frame[column].tolist() for column in names},
-            lambda row, column: f"frame, row {row}, column {column!r}",
+            lambda row, column: f"frame, row {row}, column {brief(column)}",
         )
         return cls(
             **parameters,

@@ -100,7 +100,7 @@ def check_columns(names: Sequence[Any], where: str) -> None:
         if name not in COLUMNS:
             raise UnknownName("column", str(name), COLUMNS, f"In {where}")
         if name in names[:i]:
-            raise InvalidInput(expected(where, f"one column {name!r}", "two"))
+            raise InvalidInput(expected(where, f"one column {brief(name)}", "two"))
     missing = [name for name in REQUIRED if name not in names]
     if missing:
         wanted = "the columns " + ", ".join(REQUIRED)

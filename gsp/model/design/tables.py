@@ -81,7 +81,7 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
         given = {name: header[i] for i, name in kept}
 
         def place(row: int, name: str) -> str:
-            return f"{filled[row][0]}, column {given.get(name, name)!r}"
+            return f"{filled[row][0]}, column {brief(given.get(name, name))}"
 
         columns = {name: [cells[i] for _, cells in filled] for i, name in kept}
         if path.suffix.lower() == ".csv":

@@ -108,7 +108,7 @@ class Reader:
     def fail(self, message: str, key: str, table: str = "", number: int = 0) -> NoReturn:
         """Raise MalformedFile with the line of a key."""
         line = line_of(self.lines, key, table, number)
-        raise MalformedFile(f"{self.origin}, line {line}, key {key!r}: {message}")
+        raise MalformedFile(f"{self.origin}, line {line}, key {brief(key)}: {message}")
 
     def known(
         self, data: dict[str, Any], keys: tuple[str, ...], table: str = "", number: int = 0
