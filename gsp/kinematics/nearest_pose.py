@@ -9,13 +9,20 @@ import numpy as np
 
 from gsp.checks import check_integer, check_memory, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, norm
 from gsp.kinematics.driven.reach import crank_bounds, reaches
+from gsp.kinematics.feasible_descent import (
+    Functions,
+    corrected,
+    descended,
+    local_minimum,
+    restored,
+)
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
@@ -68,8 +75,10 @@ def nearest(
     centre of the platform anchors and Δθ the angle of the rotation between them, so that it does
     not depend on frames and units. Sequential quadratic programming starts at the pose itself,
     at random ones near it, and at the home pose if that is feasible; the home pose counts as found.
-    The nearest feasible end is made exact by Newton's method. That there is no nearer pose is not
-    proven. Limits hold to 1e-9 of the size.
+    From each feasible end a descent goes on, all steps of which are feasible; where a search ends
+    at no feasible pose, the descent begins at its start or at a feasible pose that is looked for.
+    The nearest end is tested to second order and made exact by Newton's method. That there is no
+    nearer pose is not proven. Limits hold to 1e-9 of the size.
 
     The searches take lengths rounded to nine digits, in units of the size and about the centres of
     the anchors. So the result is the same in every unit and for all origins of the frames. Other
@@ -103,7 +112,7 @@ def nearest(
     InvalidInput
         On other types or shapes.
 
-    *Source: ours, by sequential quadratic programming and Newton's method.*
+    *Source: ours, by sequential quadratic programming, feasible descent and Newton's method.*
 
     Examples
     --------
@@ -131,17 +140,21 @@ def nearest(
     rough = _Search(small.rounded(), Pose(rounded(target.position), target.rotation))
     begin = [np.zeros(6), *generator.uniform(-0.5, 0.5, (number - 1, 6))]
     home = exact.home()
-    ends = [rough.end_from(start) for start in begin]
+    ends = [rough.minimum_from(start) for start in begin]
     if home is not None:
-        ends += [rough.end_from(rounded(home)), home]
-    near = sorted((end for end in ends if rough.allowed(end, SEARCH_TOLERANCE)), key=norm)
+        ends += [rough.minimum_from(rounded(home)), home]
+    if all(end is None for end in ends):
+        ends = [rough.restored_from(start) for start in begin]
+    near = sorted((end for end in ends if end is not None), key=norm)
+    if near:
+        near.insert(0, rough.probed(near[0]))
     best = next((end for end in map(exact.polished, near) if exact.allowed(end)), None)
     if best is None:
         raise EmptyWorkspace(
             f"nearest feasible pose: expected one near {pose!r}, received none ({number} searches)"
         )
     return Nearest(
-        pose=small.pose_to(exact.placed(best)), distance=float(norm(best)), starts=len(near)
+        pose=small.pose_to(exact.placed(best)), distance=float(norm(best)), starts=len(near) - 1
     )
 
 
@@ -217,6 +230,35 @@ class _Search:
         inside = np.isfinite(x).all() and norm(x[3:]) <= np.pi
         return bool(inside and self.slacks(x).min() >= -slack)
 
+    @kept_property
+    def functions(self) -> Functions:
+        """The slacks as functions that must not be negative."""
+        return Functions(self.slacks, self.slopes, _shortest, LIMIT_TOLERANCE)
+
+    def minimum_from(self, start: Array) -> Array | None:
+        """Return where the search from any step ends if that is feasible, None otherwise."""
+        end = _shortest(self.end_from(start))
+        for begin in (end, start):
+            feasible = corrected(self.functions, begin)
+            if feasible is not None:
+                return descended(self.functions, feasible)
+        if len(self.drives):
+            return self.restored_from(end, start)
+        return end if self.allowed(end, SEARCH_TOLERANCE) else None
+
+    def restored_from(self, *steps: Array) -> Array | None:
+        """Return the end of a descent from the first step that leads to a feasible one."""
+        for step in steps:
+            feasible = restored(self.functions, step, len(self.drives))
+            if feasible is not None:
+                return descended(self.functions, feasible)
+        return None
+
+    def probed(self, end: Array) -> Array:
+        """Return a step that is a local minimum, as far as probes around it show."""
+        begin = corrected(self.functions, end)
+        return end if begin is None else local_minimum(self.functions, begin, self.end_from)
+
     def end_from(self, start: Array, accuracy: float = 1e-14) -> Array:
         """Return where sequential quadratic programming ends."""
         from scipy.optimize import minimize
@@ -237,7 +279,10 @@ class _Search:
         better = self._newton(end)
         if not self._next(better, end):
             better = self.end_from(end, 1e-28)
-        return better if self._next(better, end) else end
+        if self._next(better, end):
+            return better
+        begin = corrected(self.functions, end)
+        return end if begin is None else descended(self.functions, begin)
 
     def _next(self, x: Array, end: Array) -> bool:
         return self.allowed(x) and float(norm(x - end)) <= LONGEST_CORRECTION
@@ -265,3 +310,11 @@ class _Search:
             right = np.concatenate((g.T @ force - x, -self.slacks(x)[active]))
             x = x + np.linalg.lstsq(np.block([[bend, -g.T], [g, zero]]), right, rcond=None)[0][:6]
         return x
+
+
+def _shortest(x: Array) -> Array:
+    """Return the step to the same pose whose turn is at most π."""
+    angle = float(norm(x[3:]))
+    if not angle > np.pi:
+        return x
+    return np.concatenate((x[:3], x[3:] * (1.0 - TURN * np.round(angle / TURN) / angle)))
