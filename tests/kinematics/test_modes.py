@@ -524,6 +524,8 @@ def test_self_motions_are_recognised():
     angle = np.arange(6) * np.pi / 3
     ring = np.stack((np.cos(angle), 0.7 * np.sin(angle), 0 * angle), axis=1)
     assert gsp.assembly_modes(gsp.Design(SIX, ring, ring), [1.2] * 6).status == "moving"
+    ring[:, 1] /= 0.7  # regular hexagons
+    assert gsp.assembly_modes(gsp.Design(SIX, ring, ring), [1.2] * 6).status == "moving"
     corners = np.array([[0, 0, 0], [2, 0, 0], [1, np.sqrt(3), 0]])
     base = np.stack((corners, (corners + np.roll(corners, -1, axis=0)) / 2), axis=1).reshape(6, 3)
     platform = gsp.Design(SIX, base, 0.6 * np.roll(base, 3, axis=0))
@@ -536,6 +538,12 @@ def test_self_motions_are_recognised():
     modes = gsp.assembly_modes(twice, twice.at(POSE).joints)
     assert (modes.status, modes.n_complex) == ("moving", 0)
     assert numbers(modes)
+    # Three equal legs: two freedoms, and all solutions are on complex surfaces.
+    base, anchors = rng.standard_normal((2, 6, 3))[:, [0, 1, 2, 3, 3, 3]]
+    thrice = gsp.Design(SIX, base, anchors)
+    for place in ([0.0, 0.0, 1.0], [3.0, -8.0, 9.0]):
+        joints = thrice.at(gsp.Pose(place, POSE.rotation)).joints
+        assert gsp.assembly_modes(thrice, joints).status in ("moving", "incomplete")
 
 
 def _griffis_duffy(change, seed):

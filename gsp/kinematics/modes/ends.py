@@ -18,6 +18,7 @@ from gsp.kinematics.modes.equations import (
     coordinates,
     distinct,
     linear,
+    normal,
     refined,
 )
 from gsp.kinematics.modes.starts import (
@@ -53,7 +54,11 @@ OTHER_SYSTEMS, OTHER_ATTEMPTS, OTHER_SEED = 6, 4, 40
 # Step along a possible motion, how many are tried from each pose, Newton steps back to the
 # solutions, and their largest residual there, as a share of the size of the pose; the least norm of
 # the real part of a quaternion that counts.
-MOTION_STEP, MOTION_TRIES, RETURN_STEPS, MOTION_RESIDUAL, LEAST_REAL = 1e-2, 4, 20, 1e-12, 1e-3
+MOTION_STEP, MOTION_TRIES, RETURN_STEPS, MOTION_RESIDUAL, LEAST_REAL = 1e-2, 4, 20, 3e-11, 1e-3
+# Least singular values that count on the way back, as shares of the greatest one, in turn.
+LEAST_VALUES = (1e-5, 1e-7)
+# Random real poses from which real solutions are looked for.
+REAL_STARTS = 60
 # Residual below which a singular pose is a solution.
 SINGULAR_RESIDUAL = 1e-9
 # Imaginary part below which a pose may be real, and how far Newton's method may move it then.
@@ -81,7 +86,9 @@ class Ends:
         Solutions that were found beyond the number of paths; the number of the general system is
         wrong if there are any.
     moving : bool
-        Whether a curve of real solutions passes near a multiple one.
+        Whether a curve of real solutions is found near a multiple one.
+    curved : bool
+        Whether a multiple one lies on a curve of complex solutions, and no real one is found.
     """
 
     poses: Complex
@@ -92,6 +99,7 @@ class Ends:
     lost: int
     excess: int
     moving: bool
+    curved: bool
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -185,6 +193,7 @@ def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: 
     found = told_apart(layout, parameters, regular, others, *clustered(last.singular, last.left))
     regular, clusters, numbers = found.regular, found.clusters, found.numbers
     known = len(regular) + int(numbers.sum())
+    moving = moves(layout, parameters, clusters)
     infinite = max(min(max(route.diverged for route in routes), total - known), 0)
     return Ends(
         poses=np.vstack((regular, clusters)),
@@ -194,7 +203,8 @@ def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: 
         at_infinity=infinite,
         lost=max(total - known - infinite, 0),
         excess=max(known - total, 0),
-        moving=len(clusters) > 0 and moves(layout, parameters, clusters),
+        moving=moving,
+        curved=not moving and bool(on_curves(layout, parameters, clusters).any()),
     )
 
 
@@ -267,8 +277,12 @@ def _again(start: Start, parameters: Complex, found: Paths, paths: NDArray[np.in
     found.numbers[paths] = second.numbers
 
 
-def returned(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex, Array, Array]:
+def returned(
+    layout: Layout, parameters: Complex, poses: Complex, least: float = LEAST_VALUES[0]
+) -> tuple[Complex, Array, Array]:
     """Return the solutions near poses (m, 7) by Newton's method with least steps.
+
+    Singular values below the share `least` of the greatest one do not count.
 
     Returns
     -------
@@ -281,41 +295,67 @@ def returned(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Compl
     poses = poses.copy()
     for _ in range(RETURN_STEPS):
         error, slopes = linear(layout, parameters, poses)
-        poses -= (np.linalg.pinv(slopes, rcond=1e-5) @ error[..., None])[..., 0]
+        poses -= (np.linalg.pinv(slopes, rcond=least) @ error[..., None])[..., 0]
     error, slopes = linear(layout, parameters, poses)
     values = np.linalg.svd(slopes, compute_uv=False)
     return poses, np.asarray(np.abs(error).max(axis=1, initial=0.0)), np.asarray(values)
 
 
-def moves(layout: Layout, parameters: Complex, poses: Complex) -> bool:
-    """Whether a curve of real solutions passes near one of singular solutions (m, 7).
+def _settled(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex, Array, Array]:
+    """Return the same more exactly, as where all solutions beside are double ones."""
+    for least in LEAST_VALUES:
+        poses, error, values = returned(layout, parameters, poses, least)
+    return poses, error, values
 
-    Newton's method with least steps leads from their real parts to real solutions. From these a
-    step along the kernel is taken, and Newton's method leads back to solutions: to the same one if
-    it is isolated, and to one that is singular again if it is not. All of them are computed
-    together: degenerate joint values have hundreds of singular solutions.
+
+def moves(layout: Layout, parameters: Complex, poses: Complex) -> bool:
+    """Whether a curve of real solutions is found near the real parts of solutions (m, 7).
+
+    Newton's method with least steps leads from these, and from random real poses as far away, to
+    real solutions, from which `on_curves` starts.
     """
-    here = poses.real.astype(np.complex128)
+    if not len(poses):
+        return False
+    rng = np.random.default_rng(0)
+    size = float(np.median(np.abs(poses[:, 4:]).max(axis=1)))
+    drawn = rng.standard_normal((REAL_STARTS, 7)) * np.repeat([1.0, size], [4, 3])
+    here = np.vstack((poses.real, drawn)).astype(np.complex128)
     here[:, :4] /= np.maximum(np.linalg.norm(here[:, :4], axis=1, keepdims=True), LEAST_REAL)
-    here, error, spread = returned(layout, parameters, here)
+    return bool(on_curves(layout, parameters, _settled(layout, parameters, here)[0]).any())
+
+
+def on_curves(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
+    """Whether singular solutions (m, 7) lie on curves of solutions, (m,); of real ones if real.
+
+    A step along the kernel is taken, and Newton's method with least steps leads back to solutions:
+    to the same one if it is isolated, and to one that is singular again if it is not. All of them
+    are computed together: degenerate joint values have hundreds of singular solutions.
+    """
+    found = np.zeros(len(poses), dtype=bool)
+    here, error, spread = _settled(layout, parameters, poses)
     rank = (spread > NEARLY_REGULAR_SHARE * spread[:, :1]).sum(axis=1)
     chosen = np.flatnonzero((error < MOTION_RESIDUAL * _size(here)) & (rank < 7))
     if not chosen.size:
-        return False
+        return found
     tried = np.repeat(chosen, MOTION_TRIES)
     here, rank = here[tried], rank[tried]
-    kernels = np.linalg.svd(linear(layout, parameters, here)[1].real)[2]
+    slopes = linear(layout, parameters, here)[1]
+    real = not here.imag.any()
+    kernels = np.linalg.svd(slopes.real if real else slopes)[2].conj()
     rng = np.random.default_rng(0)
-    step = [_along(kernel[r:], rng) for kernel, r in zip(kernels, rank, strict=True)]
-    there, error, spread = returned(layout, parameters, here + np.array(step))
+    step = [_along(kernel[r:], rng, real=real) for kernel, r in zip(kernels, rank, strict=True)]
+    there, error, spread = _settled(layout, parameters, here + np.array(step))
     solutions = error < MOTION_RESIDUAL * _size(there)
     apart = np.linalg.norm(there - here, axis=1) > 0.3 * MOTION_STEP
-    return bool((solutions & apart & (spread[:, -1] < 1e-6 * spread[:, 0])).any())
+    moved = solutions & apart & (spread[:, -1] < LEAST_VALUES[-1] * spread[:, 0])
+    found[chosen] = moved.reshape(-1, MOTION_TRIES).any(axis=1)
+    return found
 
 
-def _along(kernel: Array, rng: np.random.Generator) -> Array:
+def _along(kernel: Complex, rng: np.random.Generator, *, real: bool) -> Complex:
     """Return a step within a kernel, whose rows (k, 7) are mixed."""
-    mixed = rng.standard_normal(len(kernel)) @ kernel
+    drawn = normal(rng, len(kernel))
+    mixed = (drawn.real if real else drawn) @ kernel
     return np.asarray(MOTION_STEP * mixed / np.linalg.norm(mixed))
 
 

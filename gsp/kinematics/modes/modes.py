@@ -91,8 +91,9 @@ class AssemblyModes(ReadOnly):
         Where two or more motions are hardly controlled, modes within about 1e-5 of the size of a
         multiple one may be missing. "moving": the joint values allow a motion, and there are poses
         besides those listed.
-        "incomplete": some paths were lost, an odd number of solutions is not real, or a regular
-        mode has a residual above 1e-10, and modes may be missing or wrong; also if a distance is
+        "incomplete": some paths were lost, an odd number of solutions is not real, a regular mode
+        has a residual above 1e-10, or solutions lie on a complex curve without a real mode on it
+        that is known, and modes may be missing or wrong; also if a distance is
         more than 1e6 times `design.rms_radius`. "undefined": joint values that are NaN or none that
         a joint can have; there are no poses. "impossible": two joint values contradict each other,
         whatever the pose, by a triangle inequality between the anchors; there are no poses.
@@ -253,6 +254,7 @@ def _result(
     residual = _residual(design, target, poses)
     rough = bool((residual[~singular] > ROUGH_RESIDUAL).any())
     odd = (total - int(ends.multiplicity[places].sum())) % 2 == 1  # others are conjugates
+    unseen = ends.curved and not singular.any()  # a curve may have real poses
     return AssemblyModes(
         joints=target,
         poses=poses,
@@ -268,7 +270,7 @@ def _result(
         n_infinite=ends.at_infinity,
         n_lost=ends.lost,
         n_paths=total + ends.at_infinity + ends.lost,
-        status=_status(ends, total - regular, doubtful=rough or odd),
+        status=_status(ends, total - regular, doubtful=rough or odd or unseen),
     )
 
 
