@@ -282,6 +282,8 @@ class _Search:
         if self._next(better, end):
             return better
         begin = corrected(self.functions, end)
+        if begin is None:  # lengths that are not rounded may be outside by a little more
+            begin = restored(self.functions, end, len(self.drives))
         return end if begin is None else descended(self.functions, begin)
 
     def _next(self, x: Array, end: Array) -> bool:

@@ -11,7 +11,7 @@ from gsp.geometry.vectors import Array
 # Of the half width and half height of a picture; the rest is its margin.
 FILLED = 0.94
 # Of the interval of k; then the middle is that of the picture to less than a pixel.
-HALVINGS = 30
+MIDDLE_HALVINGS = 30
 
 
 class View(NamedTuple):
@@ -64,7 +64,7 @@ def fit(
     place = np.array([0.0, 0.0, nearest])
     for i, k in enumerate(fields):
         narrow, wide = 0.0, k
-        for _ in range(HALVINGS):
+        for _ in range(MIDDLE_HALVINGS):
             half = (narrow + wide) / 2.0
             if _middle(seen[:, i], seen[:, 2], radii, half)[1] < nearest:
                 narrow = half
