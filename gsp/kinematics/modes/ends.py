@@ -332,6 +332,8 @@ def on_curves(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np
     are computed together: degenerate joint values have hundreds of singular solutions.
     """
     found = np.zeros(len(poses), dtype=bool)
+    if not len(poses):
+        return found
     here, error, spread = _settled(layout, parameters, poses)
     rank = (spread > NEARLY_REGULAR_SHARE * spread[:, :1]).sum(axis=1)
     chosen = np.flatnonzero((error < MOTION_RESIDUAL * _size(here)) & (rank < 7))
