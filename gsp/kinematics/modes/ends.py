@@ -57,6 +57,8 @@ OTHER_SYSTEMS, OTHER_ATTEMPTS, OTHER_SEED = 6, 4, 40
 MOTION_STEP, MOTION_TRIES, RETURN_STEPS, MOTION_RESIDUAL, LEAST_REAL = 1e-2, 4, 20, 3e-11, 1e-3
 # Least singular values that count on the way back, as shares of the greatest one, in turn.
 LEAST_VALUES = (1e-5, 1e-7)
+# Share of a step that is left of it where the solutions are on a curve.
+LEAST_MOVED_SHARE = 0.3
 # Random real poses from which real solutions are looked for.
 REAL_STARTS = 60
 # Residual below which a singular pose is a solution.
@@ -302,7 +304,10 @@ def returned(
 
 
 def _settled(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex, Array, Array]:
-    """Return the same more exactly, as where all solutions beside are double ones."""
+    """Return what `returned` does, with smaller singular values as well in a second search.
+
+    On a curve of double solutions the first search ends beside the curve.
+    """
     for least in LEAST_VALUES:
         poses, error, values = returned(layout, parameters, poses, least)
     return poses, error, values
@@ -311,8 +316,7 @@ def _settled(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Compl
 def moves(layout: Layout, parameters: Complex, poses: Complex) -> bool:
     """Whether a curve of real solutions is found near the real parts of solutions (m, 7).
 
-    Newton's method with least steps leads from these, and from random real poses as far away, to
-    real solutions, from which `on_curves` starts.
+    `on_curves` starts from these, and from random real poses as far away.
     """
     if not len(poses):
         return False
@@ -321,15 +325,16 @@ def moves(layout: Layout, parameters: Complex, poses: Complex) -> bool:
     drawn = rng.standard_normal((REAL_STARTS, 7)) * np.repeat([1.0, size], [4, 3])
     here = np.vstack((poses.real, drawn)).astype(np.complex128)
     here[:, :4] /= np.maximum(np.linalg.norm(here[:, :4], axis=1, keepdims=True), LEAST_REAL)
-    return bool(on_curves(layout, parameters, _settled(layout, parameters, here)[0]).any())
+    return bool(on_curves(layout, parameters, here).any())
 
 
 def on_curves(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
-    """Whether singular solutions (m, 7) lie on curves of solutions, (m,); of real ones if real.
+    """Whether the solutions next to poses (m, 7) lie on curves of them, (m,); of real ones if real.
 
-    A step along the kernel is taken, and Newton's method with least steps leads back to solutions:
-    to the same one if it is isolated, and to one that is singular again if it is not. All of them
-    are computed together: degenerate joint values have hundreds of singular solutions.
+    Newton's method with least steps leads to these solutions. From singular ones a step along the
+    kernel is taken, and the method leads back to solutions: to the same one if it is isolated, and
+    to one that is singular again if it is not. All of them are computed together: degenerate joint
+    values have hundreds of singular solutions.
     """
     found = np.zeros(len(poses), dtype=bool)
     if not len(poses):
@@ -348,7 +353,7 @@ def on_curves(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np
     step = [_along(kernel[r:], rng, real=real) for kernel, r in zip(kernels, rank, strict=True)]
     there, error, spread = _settled(layout, parameters, here + np.array(step))
     solutions = error < MOTION_RESIDUAL * _size(there)
-    apart = np.linalg.norm(there - here, axis=1) > 0.3 * MOTION_STEP
+    apart = np.linalg.norm(there - here, axis=1) > LEAST_MOVED_SHARE * MOTION_STEP
     moved = solutions & apart & (spread[:, -1] < LEAST_VALUES[-1] * spread[:, 0])
     found[chosen] = moved.reshape(-1, MOTION_TRIES).any(axis=1)
     return found

@@ -37,7 +37,7 @@ ROUGH_RESIDUAL = 1e-10
 STATUS_MEANINGS = MappingProxyType({
     "multiple": "some of the modes are singular poses, found to about half of the digits",
     "moving": "the platform can move with locked actuators: there are poses besides those listed",
-    "incomplete": "some paths were lost: modes may be missing",
+    "incomplete": "paths were lost, or solutions are in doubt: modes may be missing or wrong",
     "undefined": "joint values that are missing, or none that a joint can have",
     "impossible": "two joint values contradict each other, whatever the pose",
 })  # fmt: skip
