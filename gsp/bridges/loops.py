@@ -1,4 +1,7 @@
-"""The loops of a mechanism that is exported as a tree, and the tags by which Drake closes them."""
+"""The loops of a mechanism that is exported as a tree, and tags that close them.
+
+Drake and Gazebo each have own tags in URDF; programs pass over those that they do not know.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from gsp.bridges.linkage import Chain, X
-from gsp.bridges.markup import Node, joined, metric, numbers_of
+from gsp.bridges.markup import Node, joined, metric, numbers_of, roll_pitch_yaw
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -94,3 +97,32 @@ def add_ball_constraints(root: Node, loops: Iterable[Loop]) -> None:
                 ElementTree.SubElement(ball, tag, name=link)
                 tag = f"drake:ball_constraint_p_{at}"
                 ElementTree.SubElement(ball, tag, value=joined(place))
+
+
+def add_gazebo_joints(
+    root: Node, loops: Iterable[Loop], held: str, platform: Pose | None = None
+) -> None:
+    """Add the loops as joints of SDF, which Gazebo takes over when it converts URDF.
+
+    The conversion leaves out a floating joint, and with it the place of the platform, which a frame
+    of the same name has here. It unites links that a fixed joint connects if it is not told not to.
+
+    Parameters
+    ----------
+    root : element
+    loops : iterable of Loop
+    held : str
+        Joint that holds the platform.
+    platform : Pose of batch shape () or None [m]
+        Of the platform in the base if that joint is a floating one; None for a fixed one.
+    """
+    add = ElementTree.SubElement
+    model = add(root, "gazebo")
+    for loop in loops:
+        joint = add(model, "joint", name=f"{loop.name}_loop", type="fixed")
+        add(joint, "parent").text, add(joint, "child").text = loop.link_1, loop.link_2
+    if platform is None:
+        add(add(root, "gazebo", reference=held), "preserveFixedJoint").text = "true"
+    else:
+        frame = add(model, "frame", name=held, attached_to="base")
+        add(frame, "pose").text = joined([*platform.position, *roll_pitch_yaw(platform)])

@@ -26,6 +26,10 @@ OVERLAP_SHARE = 0.6  # of the length of a leg, taken by each of its two links
 # joint of several freedoms, as a share of a ball of the radius of the legs. Larger shares change
 # the motion: the platform's acceleration by about 2e-6 of g for a share of 0.01.
 SPLIT_SHARE = 0.001
+# The reader of Gazebo leaves out links of 1e-6 kg and less of a URDF, with all that they carry. In
+# small machines these links are heavier than that, up to a share of a ball.
+LEAST_SPLIT = 1.2e-6  # kg
+LARGEST_SPLIT_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -158,7 +162,7 @@ def capsules(
     plate = [stock.rod(start, end) for start, end in _plate(design.platform_points)]
     if stuff.platform_mass is not None:
         plate = [replace(rod, mass=stuff.platform_mass / len(plate)) for rod in plate]
-    bodies = {"base": tuple(base), "platform": tuple(plate), "split": (stock.ball(SPLIT_SHARE),)}
+    bodies = {"base": tuple(base), "platform": tuple(plate), "split": (stock.split(),)}
     for chain, span in legs:
         bodies |= stock.links(chain, span)
     return MappingProxyType(bodies)
@@ -201,6 +205,11 @@ class _Stock:
         """Make a ball of the radius of the legs, and of a share of its natural mass."""
         natural = self.rod(np.zeros(3), np.zeros(3))
         return replace(natural, mass=share * natural.mass)
+
+    def split(self) -> Capsule:
+        """Make a link between the turns and slides of one joint."""
+        share = LEAST_SPLIT / self.ball().mass
+        return self.ball(min(max(SPLIT_SHARE, share), LARGEST_SPLIT_SHARE))
 
     def base_rail(self, chain: Chain, span: Span) -> Capsule:
         """Make the rail of a leg on the base, in base axes."""

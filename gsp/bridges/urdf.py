@@ -19,7 +19,7 @@ from gsp.bridges.drives import (
     limit_at_zero,
 )
 from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
-from gsp.bridges.loops import Loop, add_ball_constraints, loop_of
+from gsp.bridges.loops import Loop, add_ball_constraints, add_gazebo_joints, loop_of
 from gsp.bridges.markup import (
     Node,
     base_slides,
@@ -94,7 +94,8 @@ def to_urdf(
     the configuration in which programs start. A spherical joint is three turns about z, y and x
     ("leg1_base_z" …), a cylindrical one a slide and a turn, with light links between them. Actuated
     joints have their names of `Posture.joint_names`; `Urdf.joints` has their values at the pose.
-    Tags `drake:ball_constraint` close the loops in Drake, and other programs pass over them.
+    Tags `drake:ball_constraint` close the loops in Drake, joints in <gazebo> in Gazebo with an
+    engine that has loops, and other programs pass over both.
 
     Parameters
     ----------
@@ -138,16 +139,18 @@ def to_urdf(
     root = ElementTree.Element("robot", name=design.name or design.mechanism.name)
     _add_link(root, "base", bodies["base"], metres)
     _add_link(root, "platform", bodies["platform"], metres)
+    held = "base_to_platform" if floating else "leg1_to_platform"
     if floating:
-        _add_joint(root, "base_to_platform", "floating", "base", "platform", metric(pose, metres))
+        _add_joint(root, held, "floating", "base", "platform", metric(pose, metres))
     for chain in chains:
         _add_leg(root, chain, bodies, limits, metres)
     ends = {chain: f"{chain.name}_platform" for chain in chains}
     if not floating:
         place = metric(chains[0].head.inverse(), metres)
-        _add_joint(root, "leg1_to_platform", "fixed", ends.pop(chains[0]), "platform", place)
+        _add_joint(root, held, "fixed", ends.pop(chains[0]), "platform", place)
     loops = [loop_of(chain, end, metres, design.rms_radius) for chain, end in ends.items()]
     add_ball_constraints(root, loops)
+    add_gazebo_joints(root, loops, held, metric(pose, metres) if floating else None)
     values = joint_values(design, pose, metres)
     slides = base_slides(chains, metres)
     return Urdf(written(root), tuple(loops), values, metric(pose, metres), slides)

@@ -28,7 +28,7 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     """Return the linkage of a URDF file.
 
     Its loops are those of the file `NAME.urdf.loops.json` beside it, as `gsp export` writes them,
-    and joints in elements <gazebo>.
+    and joints in elements <gazebo> of other links.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     beside = read_beside(path.with_name(path.name + ".loops.json"))
     places, joints = _tree(file, names)
     root = next(name for name in names if name not in {j.child for j in joints})
-    links = [*joints, *_loops(file, beside, places), *_gazebo_loops(file, places)]
+    links = [*joints, *_loops(file, beside, places), *_gazebo_loops(file, beside, places)]
     if len(links) == len(joints):
         wanted = "loops beside it in NAME.urdf.loops.json, or joints in <gazebo>"
         raise MalformedFile(expected(str(path), wanted, "none: the legs are open"))
@@ -149,13 +149,19 @@ def _loops(file: XmlFile, beside: Beside, places: Mapping[str, Pose]) -> Iterato
         yield Link(name=f"loop {loop.name}", parent=loop.link_1, child=loop.link_2, shift=shift)
 
 
-def _gazebo_loops(file: XmlFile, places: Mapping[str, Pose]) -> Iterator[Link]:
-    """Joints of SDF in <gazebo>, with the frame of the child, or a pose in it."""
+def _gazebo_loops(file: XmlFile, beside: Beside, places: Mapping[str, Pose]) -> Iterator[Link]:
+    """Joints of SDF in <gazebo>, with the frame of the child, or a pose in it.
+
+    Those of loops that are beside the file are left out: they are the same, without a placement.
+    """
+    known = {(loop.link_1, loop.link_2) for loop in beside.loops}
     for node in file.root.iterfind("gazebo/joint"):
         ends = [file.text(node, tag) for tag in ("parent", "child")]
         for tag, name in zip(("parent", "child"), ends, strict=True):
             if name not in places:
                 file.fail(node, f"<{tag}>", "the name of a link", brief(name))
+        if tuple(ends) in known:
+            continue
         pose = node.find("pose")
         at = Pose(np.zeros(3)) if pose is None else file.placement(node, "<pose>", pose.text)
         place = places[ends[1]].compose(at)
