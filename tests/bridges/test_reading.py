@@ -365,6 +365,7 @@ PLATES = {
     "BottomPlate": {"Thickness": 0.1, "JointRadius": 0.9, "JointSpacing": 9, "Mass": 6},
     "TopPlate": {"Thickness": 0.16, "JointRadius": 0.3, "JointSpacing": 25, "Mass": 1},
     "Actuators": {"MinExtension": 0.75, "MaxExtension": 1.5},
+    "Settings": {"MaxAngleDev": 55, "IgnoreRestHeight": 0},
     "Params": {"RestHeight": 1.2, "Spin": 30},
 }
 
@@ -377,6 +378,7 @@ def test_plates_in_json(tmp_path):
 
 
 HALF = {key: value for key, value in PLATES.items() if key != "Params"}
+IGNORED = PLATES | {"Settings": {"IgnoreRestHeight": 1}}
 
 
 def yaml_text(plates):
@@ -389,10 +391,11 @@ def yaml_text(plates):
 
 
 @pytest.mark.parametrize("form", ["json", "yaml"])
-def test_plates_without_a_rest_height_start_half_extended(form, tmp_path):
+@pytest.mark.parametrize("plates", [HALF, IGNORED], ids=["none", "ignored"])
+def test_plates_without_a_rest_height_start_half_extended(form, plates, tmp_path):
     """As `midHeightEstimate` of the package places them: all legs have their middle length."""
     path = tmp_path / f"sp.{form}"
-    text = (json.dumps if form == "json" else yaml_text)(HALF)
+    text = (json.dumps if form == "json" else yaml_text)(plates)
     path.write_text(text.replace("0.9", "9e-1"))
     found = read_model(path)
     np.testing.assert_allclose(found.at(found.home).joints, 1.125, rtol=1e-14)
@@ -419,6 +422,7 @@ WRONG_PLATES = [
     (": 1.5", ": 0.5", "Actuators.MaxExtension", "at least MinExtension, which is 0.75"),
     ("0.75", "-1", "Actuators.MinExtension", "a number ≥ 0"),
     ("1.2", "-1.2", "Params.RestHeight", "a number > 0"),
+    (": 0\n", ": 2\n", "Settings.IgnoreRestHeight", "true or false, 1 or 0"),
 ]
 
 

@@ -103,6 +103,12 @@ class Keys:
             self.fail(wanted)
         return found
 
+    def flag(self) -> bool:
+        """Return a truth value, which may be written as 0 or 1."""
+        if not isinstance(self.content, bool | int | float) or self.content not in (0, 1):
+            self.fail("true or false, 1 or 0")
+        return bool(self.content)
+
     def size(self) -> float:
         """Return a length whose inverse is finite."""
         low, high = 1.0 / arguments.LARGEST_NUMBER, arguments.LARGEST_NUMBER

@@ -127,7 +127,7 @@ def _plates(keys: Keys, name: str) -> Design:
         unit="m",
         name=name,
     )
-    if "Params" in keys and "RestHeight" in keys["Params"]:
+    if _has(keys, "Params.RestHeight") and not _is_set(keys, "Settings.IgnoreRestHeight"):
         height = keys["Params"]["RestHeight"].size()
     else:
         height = _middle_height(keys, flat, ends) + sum(thickness)
@@ -136,6 +136,11 @@ def _plates(keys: Keys, name: str) -> Design:
         platform_points=flat.platform_points - [0.0, 0.0, thickness[1]],
         home=Pose([0.0, 0.0, height]),
     )
+
+
+def _is_set(keys: Keys, key: str) -> bool:
+    first, second = key.split(".")
+    return _has(keys, key) and keys[first][second].flag()
 
 
 def _ends(actuators: Keys) -> tuple[float, float]:
