@@ -23,6 +23,7 @@ from gsp.kinematics.feasible_descent import (
     local_minimum,
     restored,
 )
+from gsp.kinematics.modes import assembly_modes
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
@@ -38,6 +39,8 @@ SEARCH_TOLERANCE = 1e-6
 # of a crank that ends at π is from it [rad]: above the tolerance of limits.
 LEAST_REACH = 1e-8
 TURN = 2.0 * np.pi
+# Legs whose assembly modes are found in milliseconds.
+QUICK_MODES = "D1^6"
 # How far a search on exact lengths may move an end, and the steps of Newton's method for it.
 LONGEST_CORRECTION, CORRECTION_STEPS = 1e-3, 3
 
@@ -76,7 +79,8 @@ def nearest(
     not depend on frames and units. Sequential quadratic programming starts at the pose itself,
     at random ones near it, and at the home pose if that is feasible; the home pose counts as found.
     From each feasible end a descent goes on, all steps of which are feasible; where a search ends
-    at no feasible pose, the descent begins at its start or at a feasible pose that is looked for.
+    at no feasible pose, the descent begins at its start or at a feasible pose that is looked for, at
+    last, for six D1 legs or drives, among the assembly modes of joint values within the strokes.
     The nearest end is tested to second order and made exact by Newton's method. That there is no
     nearer pose is not proven. Limits hold to 1e-9 of the size.
 
@@ -145,6 +149,8 @@ def nearest(
         ends += [rough.minimum_from(rounded(home)), home]
     if all(end is None for end in ends):
         ends = [rough.restored_from(start) for start in begin]
+    if all(end is None for end in ends):
+        ends = rough.from_modes(number, generator)
     near = sorted((end for end in ends if end is not None), key=norm)
     if near:
         near.insert(0, rough.probed(near[0]))
@@ -192,10 +198,13 @@ class _Search:
         """Return the step to the home pose if that is feasible."""
         if self.design.home is None:
             return None
-        middles = [p.position + p.rotation @ self.centre for p in (self.design.home, self.target)]
-        turn = log3(self.design.home.rotation @ self.target.rotation.T)
-        step = np.concatenate((middles[0] - middles[1], turn))
+        step = self.step_to(self.design.home)
         return step if self.allowed(step) else None
+
+    def step_to(self, pose: Pose) -> Array:
+        middles = [p.position + p.rotation @ self.centre for p in (pose, self.target)]
+        turn = log3(pose.rotation @ self.target.rotation.T)
+        return np.concatenate((middles[0] - middles[1], turn))
 
     def slacks(self, x: Array, least_reach: float = LEAST_REACH) -> Array:
         """Return how far the quantities are inside of their bounds; −1e9 if undefined.
@@ -253,6 +262,24 @@ class _Search:
             if feasible is not None:
                 return descended(self.functions, feasible)
         return None
+
+    def from_modes(self, number: int, rng: np.random.Generator) -> list[Array | None]:
+        """Return ends of descents from poses whose joint values are within the strokes.
+
+        They are the assembly modes, of six D1 legs or drives, where all joint values are in the
+        middles of the strokes, else at random values.
+        """
+        whole = np.where(self.design.angular[:, None], [-np.pi, np.pi], [-np.inf, np.inf])
+        n = len(whole)
+        low, high = np.clip(np.stack((self.low[:n], self.high[:n])), *whole.T)
+        if self.design.mechanism.name != QUICK_MODES or not np.isfinite(high - low).all():
+            return []
+        for share in (np.full(n, 0.5), *rng.random((number, n))):
+            poses = assembly_modes(self.design, low + share * (high - low)).poses
+            ends = [self.restored_from(self.step_to(poses[i])) for i in range(len(poses))]
+            if any(end is not None for end in ends):
+                return ends
+        return []
 
     def probed(self, end: Array) -> Array:
         """Return a step that is a local minimum, as far as probes around it show."""

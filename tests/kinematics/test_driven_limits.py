@@ -155,6 +155,29 @@ def test_the_nearest_pose_is_feasible_and_no_sample_is_nearer(name, width):
     assert gsp.nearest(design, design.home, limits).distance == 0
 
 
+def test_short_cranks_of_narrow_strokes_without_a_home_pose():
+    """General ones, far away: no search ends in the strokes but those from assembly modes."""
+    rng = np.random.default_rng(31)
+    base, platform = rng.uniform(-1.0, 1.0, (6, 3)), rng.uniform(-0.6, 0.6, (6, 3))
+    known = Pose([0.1, -0.2, 1.2])
+    axes = rng.normal(size=(6, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    arms = np.cross(axes, rng.normal(size=(6, 3)))
+    arms *= 0.05 / np.linalg.norm(arms, axis=1, keepdims=True)
+    rods = np.linalg.norm(known.position + platform - base - arms, axis=1)
+    design = gsp.Design(
+        [Crank(arm=arm, rod=rod) for arm, rod in zip(arms, rods, strict=True)],
+        base_points=base,
+        base_directions=axes,
+        platform_points=platform,
+    )
+    joints = design.at(known).joints
+    strokes = np.stack((joints - 0.05, joints + 0.05), axis=1)
+    away = known.moved(np.random.default_rng(0).uniform(-1.0, 1.0, 6))
+    found = gsp.nearest(design, away, gsp.Limits(strokes=strokes), starts=1)
+    assert gsp.feasible(design, found.pose, gsp.Limits(strokes=strokes + [-1e-8, 1e-8])).ok
+
+
 def test_a_stroke_beyond_a_half_turn_ends_there():
     """A crank in [2, 4] must be in [2, π], as feasibility has it."""
     design = driven.rotary()
