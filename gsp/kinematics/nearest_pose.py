@@ -79,8 +79,9 @@ def nearest(
     not depend on frames and units. Sequential quadratic programming starts at the pose itself,
     at random ones near it, and at the home pose if that is feasible; the home pose counts as found.
     From each feasible end a descent goes on, all steps of which are feasible; where a search ends
-    at no feasible pose, the descent begins at its start or at a feasible pose that is looked for, at
-    last, for six D1 legs or drives, among the assembly modes of joint values within the strokes.
+    at no feasible pose, the descent begins at its start or at a feasible pose that is looked for.
+    If none is found, assembly modes of joint values within the strokes are tried, for six D1 legs
+    or drives.
     The nearest end is tested to second order and made exact by Newton's method. That there is no
     nearer pose is not proven. Limits hold to 1e-9 of the size.
 
