@@ -17,9 +17,6 @@ from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
-# Declares the prefix of Drake's tags; without it a strict reader of XML refuses them.
-NAMESPACE = "http://drake.mit.edu"
-
 
 @read_only_tuple
 class Loop(NamedTuple):
@@ -83,7 +80,6 @@ def add_ball_constraints(root: Node, loops: Iterable[Loop]) -> None:
     A weld constraint of Drake has one compliance for its six rows. The light links within a joint
     turn so easily that it is then a thousand times too soft in translation, and loops open.
     """
-    root.set("xmlns:drake", NAMESPACE)
     for loop in loops:
         for number, point in enumerate(loop.points, 1):
             name = loop.name if len(loop.points) == 1 else f"{loop.name}_{number}"

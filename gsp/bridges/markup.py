@@ -16,6 +16,8 @@ from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 Node = ElementTree.Element
+# What the shapes of a link are for, in URDF and SDF.
+PURPOSES = ("visual", "collision")
 ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 
 

@@ -9,9 +9,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from gsp.bridges.contacts import NAMESPACE, ignore_own_contacts
 from gsp.bridges.drives import UNLIMITED, Drives, JointLimit, joint_limits, limit_at_zero
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.markup import (
+    PURPOSES,
     Node,
     base_slides,
     joined,
@@ -110,7 +112,7 @@ def to_sdf(
     metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
     limits = joint_limits(design, drives, metres)
-    root = ElementTree.Element("sdf", version=VERSION)
+    root = ElementTree.Element("sdf", {"version": VERSION, "xmlns:drake": NAMESPACE})
     model = ElementTree.SubElement(
         root, "model", name=design.name or design.mechanism.name, canonical_link="base"
     )
@@ -119,6 +121,7 @@ def to_sdf(
     _add_link(model, "platform", pose, fixed_to_platform(chains, bodies), metres)
     for chain in chains:
         _add_leg(model, chain, bodies, limits, metres)
+    ignore_own_contacts(model)
     values, slides = joint_values(design, pose, metres), base_slides(chains, metres)
     return Sdf(written(root), values, metric(pose, metres), slides)
 
@@ -161,12 +164,13 @@ def _add_link(model: Node, name: str, place: Pose, parts: Sequence[Capsule], met
     for entry, value in moments(body, metres).items():
         add(inertia, entry).text = value
     for number, part in enumerate(parts, 1):
-        visual = add(link, "visual", name=f"{name}_{number}")
-        _add_pose(visual, metric(part.frame, metres))
-        shape = add(add(visual, "geometry"), "capsule" if part.length > 0.0 else "sphere")
-        add(shape, "radius").text = repr(part.radius * metres)
-        if part.length > 0.0:
-            add(shape, "length").text = repr(part.length * metres)
+        for purpose in PURPOSES:
+            node = add(link, purpose, name=f"{name}_{number}_{purpose}")
+            _add_pose(node, metric(part.frame, metres))
+            shape = add(add(node, "geometry"), "capsule" if part.length > 0.0 else "sphere")
+            add(shape, "radius").text = repr(part.radius * metres)
+            if part.length > 0.0:
+                add(shape, "length").text = repr(part.length * metres)
 
 
 def _add_joint(

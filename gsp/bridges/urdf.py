@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from gsp import arguments
+from gsp.bridges.contacts import NAMESPACE, disable_contacts_in_mujoco, ignore_own_contacts
 from gsp.bridges.drives import (
     NO_STROKE,
     UNLIMITED,
@@ -21,6 +22,7 @@ from gsp.bridges.drives import (
 from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
 from gsp.bridges.loops import Loop, add_ball_constraints, add_gazebo_joints, loop_of
 from gsp.bridges.markup import (
+    PURPOSES,
     Node,
     base_slides,
     joined,
@@ -136,7 +138,8 @@ def to_urdf(
     metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
     limits = joint_limits(design, drives, metres)
-    root = ElementTree.Element("robot", name=design.name or design.mechanism.name)
+    name = {"name": design.name or design.mechanism.name}
+    root = ElementTree.Element("robot", name | {"xmlns:drake": NAMESPACE})
     _add_link(root, "base", bodies["base"], metres)
     _add_link(root, "platform", bodies["platform"], metres)
     held = "base_to_platform" if floating else "leg1_to_platform"
@@ -149,6 +152,8 @@ def to_urdf(
         place = metric(chains[0].head.inverse(), metres)
         _add_joint(root, held, "fixed", ends.pop(chains[0]), "platform", place)
     loops = [loop_of(chain, end, metres, design.rms_radius) for chain, end in ends.items()]
+    ignore_own_contacts(root)
+    disable_contacts_in_mujoco(root)
     add_ball_constraints(root, loops)
     add_gazebo_joints(root, loops, held, metric(pose, metres) if floating else None)
     values = joint_values(design, pose, metres)
@@ -198,13 +203,14 @@ def _add_link(root: Node, name: str, parts: Sequence[Capsule], metres: float) ->
     link = ElementTree.SubElement(root, "link", name=name)
     _add_inertia(link, Body.of(parts), metres)
     for part in parts:
-        visual = ElementTree.SubElement(link, "visual")
-        _add_origin(visual, metric(part.frame, metres))
-        shape = ElementTree.SubElement(visual, "geometry")
         sizes = {"radius": repr(part.radius * metres)}
         if part.length > 0.0:
             sizes["length"] = repr(part.length * metres)
-        ElementTree.SubElement(shape, "cylinder" if part.length > 0.0 else "sphere", sizes)
+        for purpose in PURPOSES:
+            node = ElementTree.SubElement(link, purpose)
+            _add_origin(node, metric(part.frame, metres))
+            shape = ElementTree.SubElement(node, "geometry")
+            ElementTree.SubElement(shape, "cylinder" if part.length > 0.0 else "sphere", sizes)
 
 
 def _add_inertia(link: Node, body: Body, metres: float) -> None:

@@ -262,6 +262,8 @@ def test_mujoco_reads_the_urdf_with_the_same_accelerations():
         model = mujoco.MjModel.from_xml_string(text)
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
+        assert model.ngeom > 6 * design.n_legs
+        assert not data.ncon
         tree = pin.buildModelFromXML(text)
         expected = open_acceleration(tree, pin.neutral(tree))
         for name in set(tree.names) - {"universe", "base_to_platform"}:

@@ -16,6 +16,7 @@ import pytest
 
 import gsp
 from gsp.bridges import Solids, masses, simulate, to_mjcf, to_pinocchio, to_sdf, to_urdf
+from gsp.bridges.contacts import NAMESPACE
 from gsp.bridges.proof import BOX, random_design
 from gsp.model.units import METRES_PER_UNIT
 from tests import campaign
@@ -143,7 +144,7 @@ def test_drake(name, floating, tmp_path):
     design = DESIGNS[name]
     tree, path = written(tmp_path, design, floating=floating)
     builder = drake.DiagramBuilder()
-    plant = builder.AddSystem(drake.MultibodyPlant(STEP))
+    plant, _ = drake.AddMultibodyPlantSceneGraph(builder, STEP)
     drake.Parser(plant).AddModels(path)
     plant.WeldFrames(plant.world_frame(), plant.GetFrameByName("base"))
     assert plant.num_constraints() == sum(len(loop.points) for loop in tree.loops)
@@ -168,10 +169,17 @@ def test_drake(name, floating, tmp_path):
         return float(np.abs(gaps).max())
 
     assert gap() < 1e-12
+    assert not touching(plant, context)
     simulator.AdvanceTo(SECONDS)
     assert gap() < GAP * size(design)
     place = plant.GetBodyByName("platform").EvalPoseInWorld(context).translation()
     np.testing.assert_allclose(place, tree.platform.position, atol=1e-3 * size(design))
+
+
+def touching(plant, context):
+    """Whether links are in contact, which have shapes for it."""
+    assert plant.GetCollisionGeometriesForBody(plant.GetBodyByName("leg1_upper"))
+    return plant.get_geometry_query_input_port().Eval(context).HasCollisions()
 
 
 def placed(drake, pose):
@@ -294,7 +302,7 @@ def test_drake_holds_the_sdf_with_its_loops_as_constraints(name, caplog):
     design = DESIGNS[name]
     text, closings = cut(to_sdf(design, design.home).text)
     builder = drake.DiagramBuilder()
-    plant = builder.AddSystem(drake.MultibodyPlant(SDF_STEP))
+    plant, _ = drake.AddMultibodyPlantSceneGraph(builder, SDF_STEP)
     with caplog.at_level(logging.WARNING):
         drake.Parser(plant).AddModelsFromString(text, "sdf")
     assert not caplog.records
@@ -306,6 +314,7 @@ def test_drake_holds_the_sdf_with_its_loops_as_constraints(name, caplog):
     context = plant.GetMyContextFromRoot(simulator.get_mutable_context())
     for joint in design.joint_names:
         plant.GetJointByName(joint).Lock(context)
+    assert not touching(plant, context)
     simulator.AdvanceTo(SECONDS)
     for parent, child, place in closed(drake, text, closings, 0.0):
         one, two = (
@@ -316,6 +325,7 @@ def test_drake_holds_the_sdf_with_its_loops_as_constraints(name, caplog):
 
 def cut(text):
     """An SDF whose platform is free, and the joints that held it."""
+    ElementTree.register_namespace("drake", NAMESPACE)  # keeps the prefix, as Drake demands it
     root = ElementTree.fromstring(text)
     model = root.find("model")
     closings = [joint for joint in model.iter("joint") if joint.find("child").text == "platform"]

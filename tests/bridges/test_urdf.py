@@ -1,13 +1,14 @@
 """The URDF tree loads in Pinocchio, and closes at its listed loops."""
 
 import json
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
 import gsp
-from gsp.bridges import Drives, Solids, to_pinocchio, to_urdf
+from gsp.bridges import Drives, Solids, to_pinocchio, to_sdf, to_urdf
 from gsp.bridges.proof import BOX, random_design
 from gsp.errors import InvalidInput
 from gsp.geometry.pose import Pose
@@ -63,6 +64,21 @@ def test_lengths_are_metres_and_the_links_have_mass():
     inertia = model.inertias[joint].inertia
     assert (np.linalg.eigvalsh(inertia) > 0).all()
     assert model.nq == q.size
+
+
+@pytest.mark.parametrize("export", [to_urdf, to_sdf])
+def test_shapes_are_seen_and_touched(export):
+    root = ElementTree.fromstring(export(TWO, TWO.home).text)
+    for link in root.iter("link"):
+        shapes = {
+            purpose: [
+                [(part.tag, part.text, part.attrib) for part in shape.iter() if part is not shape]
+                for shape in link.iterfind(purpose)
+            ]
+            for purpose in ("visual", "collision")
+        }
+        assert shapes["visual"]
+        assert shapes["visual"] == shapes["collision"]
 
 
 def limits_of(model, name):
