@@ -11,6 +11,7 @@ from gsp.bridges.mujoco.mjcf import LARGEST_REACH
 from gsp.bridges.mujoco.simulation import compiled
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
 from gsp.errors import InvalidInput, MissingParameter, MissingSoftware
+from gsp.model.units import METRES_PER_UNIT
 from tests import campaign
 
 mujoco = pytest.importorskip("mujoco")
@@ -50,10 +51,32 @@ def test_models_load_assembled(mechanism):
     assert np.abs(data.efc_pos).max() < 1e-12
     assert [model.actuator(i).name for i in range(model.nu)] == list(design.joint_names)
     np.testing.assert_allclose(data.actuator_length, design.at(pose).joints, atol=1e-12)
-    np.testing.assert_allclose(data.ctrl, design.at(pose).joints, atol=1e-12)
+    np.testing.assert_array_equal(data.ctrl, 0.0)
     np.testing.assert_allclose(model.qpos0, model.key_qpos[0], atol=1e-12)
     np.testing.assert_allclose(data.body("platform").xpos, pose.position, atol=1e-12)
     np.testing.assert_allclose(data.body("platform").xmat.reshape(3, 3), pose.rotation, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["apo-secondary", "toz-kucuk-2016-d3-6"])
+def test_models_stay_where_they_start(name):
+    """As programs load them: without a reset to the keyframe, with all controls zero."""
+    design = gsp.catalogue.design(name)
+    model = mujoco.MjModel.from_xml_string(to_mjcf(design, design.home))
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 300)
+    place = design.home.position * METRES_PER_UNIT[design.unit]
+    sag = 1e-3 * design.rms_radius * METRES_PER_UNIT[design.unit]
+    np.testing.assert_allclose(data.body("platform").xpos, place, atol=sag)
+
+
+def test_controls_are_changes_of_the_joint_variables():
+    design = gsp.catalogue.design("apo-secondary")
+    model = mujoco.MjModel.from_xml_string(to_mjcf(design, design.home, gravity=np.zeros(3)))
+    data = mujoco.MjData(model)
+    aim = design.home.moved([5.0, -8.0, 10.0, 0.02, 0.03, -0.05])
+    data.ctrl[:] = 1e-3 * (design.at(aim).joints - design.at(design.home).joints)
+    mujoco.mj_step(model, data, 2000)
+    np.testing.assert_allclose(data.body("platform").xpos, 1e-3 * aim.position, atol=1e-6)
 
 
 def test_models_with_all_platform_anchors_in_one_point_load():
@@ -164,7 +187,8 @@ def test_masses_and_strokes_are_the_users():
     assert model.body("platform").mass[0] == pytest.approx(3.0)
     assert model.body("leg1_lower").mass[0] == pytest.approx(0.2)
     np.testing.assert_allclose(model.joint("d1").range, [0.01, 0.3])
-    np.testing.assert_allclose(model.actuator("d1").ctrlrange, [0.01, 0.3])
+    change = np.array([0.01, 0.3]) - 1e-3 * TWO.at(TWO.home).joints[0]
+    np.testing.assert_allclose(model.actuator("d1").ctrlrange, change)
     assert not model.joint("d2").limited[0]
 
 

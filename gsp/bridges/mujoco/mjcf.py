@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.bridges.drives import Drives, joint_limits
+from gsp.bridges.drives import Drives, JointLimit, joint_limits
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.markup import Node, joined
 from gsp.bridges.mujoco.elements import (
@@ -66,9 +66,9 @@ def to_mjcf(
     with a `weld` to the platform. Actuated joints have their names of `Posture.joint_names`
     ("d1", "theta4"), their values are the joint variables [m, rad], and each has a position servo
     of the same name, and sensors "d1_position" and "d1_force"; those of the platform are
-    "platform_position" and "platform_rotation" (w, x, y, z). The keyframe "pose" holds the
-    configuration and the servos' targets: reset to it
-    (`mujoco.mj_resetDataKeyframe(model, data, 0)`), or the targets are zero.
+    "platform_position" and "platform_rotation" (w, x, y, z). The control of a servo is the change
+    of its joint variable from that at the pose, so that zero, as programs start, holds the pose.
+    The keyframe "pose" is the same state.
 
     Parameters
     ----------
@@ -130,8 +130,8 @@ def to_mjcf(
         _add_leg(world, chain, bodies, unit)
     _add_platform(world, chains, pose, bodies, unit)
     _close(root, chains)
-    _actuate(root, chains, frequency, mass, inertia)
-    _limit(root, design, drives, unit)
+    _actuate(root, chains, frequency, {"slide": mass, "turn": inertia}, unit)
+    _limit(root, chains, joint_limits(design, drives, unit), unit)
     _add_sensors(root, chains)
     _add_key(root, chains, pose, unit)
     ElementTree.indent(root)
@@ -253,40 +253,46 @@ def _close(root: Node, chains: Iterable[Chain]) -> None:
 
 
 def _actuate(
-    root: Node, chains: Iterable[Chain], frequency: float, mass: float, inertia: float
+    root: Node, chains: Iterable[Chain], frequency: float, loads: Mapping[str, float], unit: float
 ) -> None:
-    """Servos in the order of `Posture.joint_names`.
+    """Servos in the order of `Posture.joint_names`, whose control zero holds the pose.
 
+    With the value q₀ at the pose the force is kp (control + q₀ - q) - kv q̇.
     The armature inertia of a drive is the moving mass: without it, a light leg on a stiff servo
     oscillates faster than MuJoCo's constraints can follow.
     """
     joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
     actuators = ElementTree.SubElement(root, "actuator")
     for motion in _active(chains):
-        load = mass if motion.kind == "slide" else inertia
+        load = loads[motion.kind]
         joints[motion.name].set("armature", repr(load))
+        stiffness, damping = frequency**2 * load, 2.0 * frequency * load
+        force = [stiffness * metric(motion, unit), -stiffness, -damping]
         ElementTree.SubElement(
             actuators,
-            "position",
+            "general",
             name=motion.name,
             joint=motion.name,
-            kp=repr(frequency**2 * load),
-            kv=repr(2.0 * frequency * load),
+            gainprm=repr(stiffness),
+            biastype="affine",
+            biasprm=joined(force),
         )
 
 
-def _limit(root: Node, design: Design, drives: Drives | None, unit: float) -> None:
-    """Write strokes as ranges of joints and servos, and greatest forces of servos."""
-    limits = joint_limits(design, drives, unit)
+def _limit(
+    root: Node, chains: Iterable[Chain], limits: Mapping[str, JointLimit], unit: float
+) -> None:
+    """Write strokes as ranges of joints and controls, and greatest forces of servos."""
     joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
-    servos = {servo.get("name", ""): servo for servo in root.iter("position")}
-    for name, limit in limits.items():
-        stroke = (limit.least, limit.greatest)
+    servos = {servo.get("name", ""): servo for servo in root.iter("general")}
+    for motion in _active(chains):
+        limit, servo = limits[motion.name], servos[motion.name]
+        stroke = np.array([limit.least, limit.greatest])
         if np.isfinite(stroke).all() and limit.least < limit.greatest:
-            joints[name].set("range", joined(stroke))
-            servos[name].set("ctrlrange", joined(stroke))
+            joints[motion.name].set("range", joined(stroke))
+            servo.set("ctrlrange", joined(stroke - metric(motion, unit)))
         if np.isfinite(limit.effort):
-            servos[name].set("forcerange", joined((-limit.effort, limit.effort)))
+            servo.set("forcerange", joined((-limit.effort, limit.effort)))
 
 
 def _add_sensors(root: Node, chains: Iterable[Chain]) -> None:
@@ -302,9 +308,8 @@ def _add_sensors(root: Node, chains: Iterable[Chain]) -> None:
 
 def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> None:
     values = configuration(chains, chains, pose, unit)
-    targets = [metric(motion, unit) for motion in _active(chains)]
     keyframe = ElementTree.SubElement(root, "keyframe")
-    ElementTree.SubElement(keyframe, "key", name="pose", qpos=joined(values), ctrl=joined(targets))
+    ElementTree.SubElement(keyframe, "key", name="pose", qpos=joined(values))
 
 
 def _active(chains: Iterable[Chain]) -> list[Motion]:

@@ -102,13 +102,12 @@ def simulate(
     mujoco = load_mujoco()
     model, data = load(design, pose, solids, gravity, servo_frequency)
     scale = metres_of(design, solids)
-    start = np.array(data.ctrl)
-    end = start
+    change = np.zeros(model.nu)
     if joints is not None:
         given = check_array("joints", joints, (model.nu,))
         if given.ndim != 1:
             raise InvalidInput(expected("joints", f"shape ({model.nu},)", f"shape {given.shape}"))
-        end = given * scale
+        change = given * scale - data.actuator_length
     longest = MOST_SIMULATED * model.opt.timestep
     if seconds > longest:
         got, most = apart(seconds, longest)
@@ -116,7 +115,7 @@ def simulate(
     steps = int(np.ceil(seconds / model.opt.timestep))
     with meter(progress, "simulate") as report:
         for step in range(steps):
-            data.ctrl[:] = start + (end - start) * min(1.0, 2.0 * step / steps)
+            data.ctrl[:] = change * min(1.0, 2.0 * step / steps)
             mujoco.mj_step(model, data)
             if not (step + 1) % STEPS_PER_REPORT or step + 1 == steps:
                 report(step + 1, steps)
@@ -138,12 +137,12 @@ def load(
     gravity: ArrayLike = GRAVITY,
     servo_frequency: float = SERVO_FREQUENCY,
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """Return model and data at the keyframe of the pose."""
+    """Return model and data at the pose."""
     mujoco = load_mujoco()
     text = to_mjcf(design, pose, solids, gravity=gravity, servo_frequency=servo_frequency)
     model = compiled(text)
     data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
     return model, data
 
 
