@@ -52,6 +52,19 @@ def mixed(seed=0):
     return Design(legs, base, platform, lines, rng.normal(size=(7, 3)), home=HOME, unit="m")
 
 
+def of_five_legs():
+    """Two sliders, a crank whose tip is off the plane of its base point, D1 and D4 A1."""
+    legs = [
+        Slider(rod=2.4), "D1", Slider(rod=2.4, branch=-1),
+        Crank(arm=0.3 * BASE[4] - 0.3 * TANGENTS[4], rod=2.1, branch=-1), "D4 A1",
+    ]  # fmt: skip
+    chosen = [0, 2, 3, 4, 5]
+    lines = ring(1.0, [10.0, 30.0, 40.0, 50.0, 60.0], 0.5)
+    home = Pose.from_rpy([0.05, 0.03, 1.5], [0.03, -0.05, 0.1])
+    points = BASE[chosen], PLATFORM[chosen]
+    return Design(legs, *points, TANGENTS[chosen], lines, home=home, unit="m", name="five legs")
+
+
 def general(kind, branch, seed=1):
     """Six legs of one kind with general dimensions."""
     rng = np.random.default_rng(seed)

@@ -20,6 +20,8 @@ NEAR = gsp.PoseBox.around(DESIGN.home, [0.01] * 6)
 
 TABLES = "tests/evaluation/test_driven_designs.py"
 ROWS = "tests/model/test_drives.py"
+MODELS = "tests/bridges/test_driven_exports.py"
+WEIGHTS = "tests/statics/test_weights.py"
 WORKS = MappingProxyType({
     "evaluations.evaluate": TABLES, "order.rank": TABLES, "feasibility.feasible": TABLES,
     "gradients.gradient": TABLES, "derivatives.sensitivities": TABLES,
@@ -37,6 +39,12 @@ WORKS = MappingProxyType({
     "nearest_pose.nearest": "tests/kinematics/test_driven_limits.py",
     "plots.modes.assembly_modes": "tests/plots/test_modes_plot.py",
     "mechanisms.mechanism": "tests/plots/test_mechanism_plot.py", "motions.animate": "here",
+    **{f"{module}.{name}": MODELS for module, name in (
+        ("agreements", "agreement"), ("exports", "export"), ("mjcf", "to_mjcf"),
+        ("mujoco.rates", "mujoco_rates"), ("simulation", "simulate"), ("model", "to_pinocchio"),
+        ("pinocchio.rates", "pinocchio_rates"), ("sdf", "to_sdf"), ("Solids", "unit"),
+        ("solids", "masses"), ("urdf", "to_urdf"))},
+    "weights.gravity_wrench": WEIGHTS, "weights.holding_forces": WEIGHTS,
     # Facts of the design, and indices, which are functions of the rows.
     "Index.missing": TABLES, "Index.missing_message": TABLES, "Index.unit": ROWS,
     **{f".{name}": ROWS for name in gsp.indices.INDICES if name != "singularity_distance"},

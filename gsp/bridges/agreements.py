@@ -22,7 +22,6 @@ from gsp.errors import UnknownName
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross
 from gsp.model.design import Design
-from gsp.model.legs import LEGS
 from gsp.model.posture import Posture
 
 PROGRAMS: Mapping[str, Callable[[Design, Pose], Rates]] = MappingProxyType(
@@ -73,6 +72,8 @@ def agreement(design: Design, pose: Pose, program: str = "pinocchio") -> Agreeme
         If `program` is neither.
     MissingSoftware
         If the program is not installed.
+    InvalidInput
+        If a drive at the base is singular at the pose.
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_pinocchio` and `to_mjcf`.
 
@@ -105,17 +106,13 @@ def _passive_differences(posture: Posture, rates: Rates, scale: float) -> list[f
     """
     ours = posture.passive_rates(scale) * np.repeat([scale, 1.0], 3)
     differences, start = [], 0
-    for i in _in_order_of_kinds(posture.design):
+    groups, legs = posture.design.groups, np.arange(posture.design.n_legs)
+    for i in np.concatenate([legs[group.legs] for group in groups]):  # in this order they stack
         theirs = rates.legs[i]
         stop = start + 4 + len(theirs.slides)
         differences.append(_leg_difference(ours[start:stop], theirs, scale))
         start = stop
     return differences
-
-
-def _in_order_of_kinds(design: Design) -> list[int]:
-    """Return the numbers of the legs in the order in which `Posture.passive_rates` stacks them."""
-    return [i for kind in LEGS for i, leg in enumerate(design.legs) if leg is kind]
 
 
 def _leg_difference(ours: Array, theirs: LegRates, scale: float) -> float:
@@ -126,7 +123,8 @@ def _leg_difference(ours: Array, theirs: LegRates, scale: float) -> float:
     largest = np.abs(ours).max()
     weights = np.repeat([1.0, 1.0 / scale], 3)
     gaps = [np.abs(theirs.slides * weights - ours[4:]).max(initial=0.0) / largest]
-    for rows, spin in ((ours[:2], theirs.spin), (ours[2:4], theirs.spin - np.eye(6)[3:])):
+    for rows, seen_from in ((ours[:2], theirs.carrier), (ours[2:4], np.eye(6)[3:])):
+        spin = theirs.spin - seen_from
         turning = cross(spin.T, theirs.axis).T * scale * weights  # u̇ = ω × u
         gaps.append(np.abs(turning.T @ turning - rows.T @ rows).max() / largest**2)
     return float(max(gaps))

@@ -2,92 +2,29 @@
 
 Each leg is a chain of three joints from a frame on the base to a frame on the platform. In the
 frame of a link, x lies along the line of the leg's base or platform joint (if it is one), z along
-the leg, so that every joint turns about or slides along x or z and no link has an offset. The
-chain depends on the design alone; the pose determines the values of the joints, and the side of
-its base line on which a CCC leg is.
+the leg, so that every joint turns about or slides along x or z. Joints of legs that change their
+own length are at the origin of the link below. Of a leg that is driven at the base the first joint
+is that of the drive, the second is the ball at the tip of the carriage or the crank, and the third
+at the end of the rod. The chain depends on the design alone; the pose determines the values of the
+joints, and the side of its base line on which a CCC leg is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import cast
 
 import numpy as np
 
+from gsp.bridges.motions import Chain, Kind, Motion, X, Z
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, perpendicular, unit
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
+from gsp.model.drives import Drive
 from gsp.model.legs import Leg
 from gsp.model.posture import Posture
-
-X, Z = np.eye(3)[0], np.eye(3)[2]
-
-
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """One freedom of a joint, and its value at the pose.
-
-    Attributes
-    ----------
-    kind : "ball", "slide" or "turn"
-    name : str
-        Name of the actuated joint ("d1", "theta4"), or of the passive one.
-    axis : (3,) array
-        Of a slide or a turn, in the frame of the link below.
-    value : float [unit of the design, or rad], or (3, 3) array
-        Displacement, angle, or for a ball the rotation of the link above in the link below.
-    active : bool
-        Whether an actuator drives it.
-    """
-
-    kind: Literal["ball", "slide", "turn"]
-    name: str
-    axis: Array
-    value: float | Array
-    active: bool = False
-
-    @property
-    def placement(self) -> Pose:
-        """Frame above the joint in the frame below it."""
-        if self.kind == "ball":
-            return Pose(np.zeros(3), self.value)
-        if self.kind == "slide":
-            return Pose(self.axis * self.value)
-        return Pose(np.zeros(3)).moved(np.concatenate((np.zeros(3), self.axis * self.value)))
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Chain:
-    """One leg: its joints between a frame on the base and a frame on the platform.
-
-    Attributes
-    ----------
-    leg : Leg
-    name : str
-        "leg1", "leg2" …
-    foot, head : Pose
-        The frame on the base, in base axes, and the one on the platform, in platform axes.
-    base, middle, platform : tuple of Motion
-        The three joints; one motion of a ball, two of a cylindrical joint (slide, then turn).
-    length : float [unit of the design]
-        Distance of the feet at the pose.
-    """
-
-    leg: Leg
-    name: str
-    foot: Pose
-    head: Pose
-    base: tuple[Motion, ...]
-    middle: tuple[Motion, ...]
-    platform: tuple[Motion, ...]
-    length: float
-
-    @property
-    def motions(self) -> tuple[Motion, ...]:
-        """All motions from base to platform."""
-        return self.base + self.middle + self.platform
+from gsp.model.rods import TIPS
 
 
 def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
@@ -117,7 +54,7 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
     ['leg4_base_slide', 'leg4_base_turn', 'd4', 'theta4', 'leg4_platform_slide', \
 'leg4_platform_turn']
     """
-    check_undriven("design", design)
+    check_type("design", design, Design)
     posture = design.at(pose)
     if pose.shape:
         raise InvalidInput(expected("pose", "a single pose", f"a batch of shape {pose.shape}"))
@@ -125,66 +62,61 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
     return tuple(_chain(posture, i) for i in range(design.n_legs))
 
 
-class Span(NamedTuple):
-    """What a leg passes through at several poses [unit of the design].
-
-    Attributes
-    ----------
-    longest : float
-        Greatest distance of its feet.
-    base, platform : (2,) tuple of float
-        Least and greatest displacement along the line of its base and platform joint; zeros where
-        there is none.
-    """
-
-    longest: float
-    base: tuple[float, float]
-    platform: tuple[float, float]
-
-
-def spans(legs: Sequence[Sequence[Chain]]) -> tuple[Span, ...]:
-    """Return the span of each leg over poses.
-
-    Parameters
-    ----------
-    legs : sequence of sequence of Chain
-        Those of `linkage` at each pose.
-
-    Returns
-    -------
-    tuple of Span
-    """
-    found = []
-    for chains in zip(*legs, strict=True):
-        ends = [(0.0, 0.0), (0.0, 0.0)]
-        lines = chains[0].leg.base_line, chains[0].leg.platform_line
-        for k, joints in enumerate(((c.base for c in chains), (c.platform for c in chains))):
-            if lines[k]:
-                values = [float(joint[0].value) for joint in joints]
-                ends[k] = (min(values), max(values))
-        found.append(Span(max(chain.length for chain in chains), *ends))
-    return tuple(found)
-
-
 def _chain(posture: Posture, i: int) -> Chain:
+    leg, design = posture.design.legs[i], posture.design
+    foot = Pose(design.base_points[i], _frame(design.base_directions[i]))
+    head = Pose(design.platform_points[i], _frame(design.platform_directions[i]))
+    make = _telescope if leg.drive is None else _driven
+    base, middle, platform = make(posture, i, foot, posture.pose.rotation @ head.rotation)
+    return Chain(
+        leg=leg,
+        name=f"leg{i + 1}",
+        foot=foot,
+        head=head,
+        base=base,
+        middle=middle,
+        platform=platform,
+        length=float(posture.segments.length[i]),
+    )
+
+
+Joints = tuple[tuple[Motion, ...], tuple[Motion, ...], tuple[Motion, ...]]
+
+
+def _telescope(posture: Posture, i: int, foot: Pose, end: Array) -> Joints:
+    """Make the joints of a leg that changes its own length; `end` has the axes of its head."""
     leg, name, design = posture.design.legs[i], f"leg{i + 1}", posture.design
     lines, segments = posture.lines, posture.segments
     s, t, length = lines.s[i], lines.t[i], float(segments.length[i])
     lower, upper, along = _link_axes(leg, segments.direction[i], s, t)
-    foot = Pose(design.base_points[i], _frame(design.base_directions[i]))
-    head = Pose(design.platform_points[i], _frame(design.platform_directions[i]))
     above = segments.arm[i] - lines.arm[i]  # from platform anchor to platform foot
     below = lines.d[i] + above - segments.along[i]
-    end = posture.pose.rotation @ head.rotation
-    return Chain(
-        leg=leg,
-        name=name,
-        foot=foot,
-        head=head,
-        base=_end_joint(f"{name}_base", leg.base_line, foot.rotation, lower, X, dot(below, s)),
-        middle=_middle_joint(design, i, along, length, lower, upper),
-        platform=_end_joint(f"{name}_platform", leg.platform_line, upper, end, -X, dot(above, t)),
-        length=length,
+    return (
+        _end_joint(f"{name}_base", leg.base_line, foot.rotation, lower, X, dot(below, s)),
+        _middle_joint(design, i, along, length, lower, upper),
+        _end_joint(f"{name}_platform", leg.platform_line, upper, end, -X, dot(above, t)),
+    )
+
+
+def _driven(posture: Posture, i: int, foot: Pose, end: Array) -> Joints:
+    """Make the joints of a leg that is driven at the base; `end` has the axes of its head.
+
+    The frame of the carriage or crank is that of the foot, moved along or turned about its x axis.
+    """
+    design, name = posture.design, f"leg{i + 1}"
+    drive = cast("Drive", design.drives[i])
+    row = [leg for leg, _ in design.rows].index(i)
+    kind: Kind = "slide" if design.legs[i].joints[0].kind == "P" else "turn"
+    value, joint = float(posture.joints[row]), design.joint_names[row]
+    moved = Motion(kind, joint, X, value, active=True)
+    lower = foot.rotation @ moved.placement.rotation
+    u = posture.segments.direction[i]
+    rod = _axes(_level(u), u)
+    tip, _ = TIPS[type(drive)](drive, np.zeros(3), design.base_directions[i], 0.0)
+    return (
+        (moved,),
+        (_ball(f"{name}_tip", lower, rod, foot.rotation.T @ tip),),
+        (_ball(f"{name}_platform", rod, end, Z * drive.rod),),
     )
 
 
@@ -203,14 +135,18 @@ def _link_axes(leg: Leg, u: Array, s: Array, t: Array) -> tuple[Array, Array, Ar
 def _end_joint(
     name: str, cylindrical: bool, below: Array, above: Array, slide: Array, value: Array
 ) -> tuple[Motion, ...]:
-    turn = below.T @ above
     if not cylindrical:
-        return (Motion("ball", name, np.zeros(3), turn),)
+        return (_ball(name, below, above, np.zeros(3)),)
+    turn = below.T @ above
     angle = float(np.arctan2(turn[2, 1] - turn[1, 2], turn[1, 1] + turn[2, 2]))
     return (
         Motion("slide", f"{name}_slide", slide, float(value)),
         Motion("turn", f"{name}_turn", X, angle),
     )
+
+
+def _ball(name: str, below: Array, above: Array, offset: Array) -> Motion:
+    return Motion("ball", name, np.zeros(3), below.T @ above, offset=offset)
 
 
 def _middle_joint(

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.bridges.linkage import Chain
+from gsp.bridges.motions import Chain
 from gsp.bridges.shapes import Body
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -45,9 +45,10 @@ def joint_values(design: Design, pose: Pose, metres: float) -> dict[str, float]:
 
 
 def base_slides(chains: Iterable[Chain], metres: float) -> dict[str, float]:
-    """Return the values of the slides along lines of the base [m], by their names."""
-    motions = [motion for chain in chains for motion in chain.base if motion.kind == "slide"]
-    return {motion.name: float(motion.value) * metres for motion in motions}
+    """Return the values of the passive slides along lines of the base [m], by their names."""
+    motions = [motion for chain in chains for motion in chain.base]
+    passive = [motion for motion in motions if motion.kind == "slide" and not motion.active]
+    return {motion.name: float(motion.value) * metres for motion in passive}
 
 
 def moments(body: Body, metres: float) -> dict[str, str]:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.copies import read_only_tuple
+from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 from gsp.model.legs import Leg
 
 
@@ -18,14 +21,18 @@ class LegRates(NamedTuple):
     axis : (3,) array [1]
         The direction of the leg (up to its sign), in base axes.
     spin : (3, 6) array [rad]
-        Angular velocity of the link that is joined to the base, in base axes.
+        Angular velocity of the link that is joined to the platform, in base axes.
     slides : (j, 6) array [unit of the design]
         Rates of the passive slides: those of `slide_joints`.
+    carrier : (3, 6) array [rad]
+        Angular velocity of the body from which the turns of the leg are seen: zero for the base;
+        of a leg that is driven there that of its carriage or crank.
     """
 
     axis: Array
     spin: Array
     slides: Array
+    carrier: Array
 
 
 @read_only_tuple
@@ -44,6 +51,19 @@ class Rates(NamedTuple):
     closure: float
     actuators: Array
     legs: tuple[LegRates, ...]
+
+
+def check_drives(design: Design, pose: Pose) -> None:
+    """Raise InvalidInput if a drive at the base is singular, as its rate has no bound.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape ()
+    """
+    for _, joint, reason in design.at(pose).singular_drives:
+        wanted = "one at which the rates of all joints are bounded"
+        raise InvalidInput(expected("pose", wanted, f"a singular drive of {joint}: {reason}"))
 
 
 def slide_joints(leg: Leg) -> tuple[str, ...]:

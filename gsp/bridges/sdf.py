@@ -11,7 +11,7 @@ import numpy as np
 
 from gsp.bridges.contacts import NAMESPACE, ignore_own_contacts
 from gsp.bridges.drives import UNLIMITED, Drives, JointLimit, joint_limits, limit_at_zero
-from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.linkage import linkage
 from gsp.bridges.markup import (
     PURPOSES,
     Node,
@@ -24,6 +24,7 @@ from gsp.bridges.markup import (
     roll_pitch_yaw,
     written,
 )
+from gsp.bridges.motions import Chain, Motion
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids, fixed_to_platform
 from gsp.geometry.copies import read_only_tuple
@@ -80,7 +81,7 @@ def to_sdf(
     Parameters
     ----------
     design : Design
-        Any mechanism, redundant ones included.
+        Any mechanism, redundant ones and drives at the base included.
     pose : Pose
         A single pose, at which all legs are defined.
     solids : Solids or None

@@ -19,7 +19,7 @@ from gsp.bridges.drives import (
     joint_limits,
     limit_at_zero,
 )
-from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
+from gsp.bridges.linkage import linkage
 from gsp.bridges.loops import Loop, add_ball_constraints, add_gazebo_joints, loop_of
 from gsp.bridges.markup import (
     PURPOSES,
@@ -33,6 +33,7 @@ from gsp.bridges.markup import (
     roll_pitch_yaw,
     written,
 )
+from gsp.bridges.motions import Chain, Motion, X, Z
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.geometry.copies import read_only_tuple
@@ -102,7 +103,7 @@ def to_urdf(
     Parameters
     ----------
     design : Design
-        Any mechanism, redundant ones included.
+        Any mechanism, redundant ones and drives at the base included.
     pose : Pose
         A single pose, at which all legs are defined.
     solids : Solids or None

@@ -232,6 +232,38 @@ def tip_of_crank(drive: Crank, point: Array, line: Array, joint: float) -> tuple
     return point + np.array(plus(axial, arm)), np.array(slope)
 
 
+def share_of_carriage(drive: Slider, line: Array, distance: float) -> float:
+    """Return the velocity of a carriage over that of its tip: 1, whatever its centre.
+
+    Parameters
+    ----------
+    drive : Slider
+    line : (3,) array [1]
+        Unit base direction of the leg; not used.
+    distance : float [length]
+        Not used.
+    """
+    return 1.0
+
+
+def share_of_crank(drive: Crank, line: Array, distance: float) -> float:
+    """Return the velocity of a point of a crank over that of its tip.
+
+    Parameters
+    ----------
+    drive : Crank
+    line : (3,) array [1]
+        Unit base direction of the leg.
+    distance : float [length]
+        Of the point from the axis, towards the tip.
+    """
+    _, x, _ = arm_axes(list(drive.arm), line.tolist())
+    return distance / float(norm(x))
+
+
 TIPS: MappingProxyType[type[Any], Callable[..., tuple[Array, Array]]] = MappingProxyType(
     {Slider: tip_of_slider, Crank: tip_of_crank}
+)
+SHARES: MappingProxyType[type[Any], Callable[..., float]] = MappingProxyType(
+    {Slider: share_of_carriage, Crank: share_of_crank}
 )

@@ -16,8 +16,10 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design, check_undriven
+from gsp.model.design import Design
+from gsp.model.posture.assembly import Part
 from gsp.model.posture.derivatives import moving_parts
+from gsp.model.rods import SHARES
 
 # Acceleration of free fall [m/s²], along −z.
 GRAVITY = (0.0, 0.0, -9.81)
@@ -28,7 +30,8 @@ class Masses(ReadOnly):
     """Masses of the bodies of a mechanism, and where their centres are.
 
     Each leg has a lower link that ends in the joint on the base, and an upper one that ends in the
-    joint on the platform. Their centres are on the line between the two feet of the leg.
+    joint on the platform. Their centres are on the line between the two feet of the leg. Of a leg
+    that is driven at the base they are its carriage or crank, and its rod.
 
     Parameters
     ----------
@@ -40,7 +43,8 @@ class Masses(ReadOnly):
         Of the links of the legs, ≥ 0.
     lower_centre, upper_centre : float or (n_legs,) array_like [unit of the design]
         Distance of the centre of a lower link from the base foot, towards the platform foot, and of
-        an upper link from the platform foot, towards the base foot.
+        an upper link from the platform foot, towards the base foot. Of a crank the distance from
+        its axis, towards its tip, negative for a counterweight; of a carriage it is not used.
 
     Raises
     ------
@@ -146,7 +150,9 @@ def gravity_wrench(
     """Return the wrench on the platform that does the same work as all weights.
 
     The weights of the links of the legs count by virtual work: the wrench is the derivative of the
-    work of all weights along (v, ω), by the derivatives of the formulas of the legs.
+    work of all weights along (v, ω), by the derivatives of the formulas of the legs. A carriage or
+    crank moves with the tip of its rod, a point of a crank by its share of the distance from the
+    axis.
 
     Parameters
     ----------
@@ -159,7 +165,8 @@ def gravity_wrench(
     Returns
     -------
     (..., 6) array [N, N · unit of the design]
-        About the platform origin, in base axes. NaN where a leg with mass is undefined.
+        About the platform origin, in base axes. NaN where a leg with mass is undefined, or its
+        drive at the base is singular.
 
     Raises
     ------
@@ -175,7 +182,7 @@ def gravity_wrench(
     >>> gravity_wrench(d, d.home, Masses(platform=2.0)).round(9) + 0.0
     array([  0.  ,   0.  , -19.62,   0.  ,   0.  ,   0.  ])
     """
-    check_undriven("design", design)
+    check_type("design", design, Design)
     check_type("pose", pose, Pose)
     check_type("masses", masses, Masses, "a gsp.statics.Masses")
     down, legs = _vector("gravity", gravity), _of_legs(masses, design.n_legs)
@@ -188,17 +195,40 @@ def gravity_wrench(
     result = np.array(wrench.reshape(-1, 6))
     for p, part in moving_parts(design.groups, pose.position, pose.rotation):
         own = {name: value[part.group.legs, None] for name, value in legs.items()}
-        length = part.segment.length
-        for mass, distance in (
-            (own["upper"], own["upper_centre"]),
-            (own["lower"], length - own["lower_centre"]),
+        for mass, distance, share in (
+            (own["upper"], own["upper_centre"], 1.0),
+            (own["lower"], *_lower_link(design, part, own["lower_centre"])),
         ):
             with np.errstate(all="ignore"):
-                slopes = _slopes(down, p, part.segment, distance) * mass
-            if part.undefined is not None:
-                slopes = np.where(part.undefined, np.nan, slopes)
+                slopes = _slopes(down, p, part.segment, distance) * share * mass
+            slopes = np.where(_without_slopes(part), np.nan, slopes)
             result[part.poses] += np.where(mass > 0.0, slopes, 0.0).sum(axis=1).T
     return result.reshape(wrench.shape)
+
+
+def _lower_link(design: Design, part: Part, centre: Array) -> tuple[Any, Any]:
+    """Return a point of a group of legs, and the velocity of their lower links over its velocity.
+
+    The point is given by its distance from the platform foot.
+    """
+    length = part.segment.length
+    legs = np.arange(design.n_legs)[part.group.legs]
+    drives = [design.drives[i] for i in legs]
+    shares = [
+        SHARES[type(drive)](drive, design.base_directions[i], float(distance))
+        for drive, i, distance in zip(drives, legs, centre[:, 0], strict=True)
+        if drive is not None
+    ]
+    if not shares:
+        return length - centre, 1.0
+    return length, np.array(shares)[:, None]
+
+
+def _without_slopes(part: Part) -> Any:
+    """Return where points of legs have no derivatives: (k, poses), or False for nowhere."""
+    undefined = False if part.undefined is None else part.undefined
+    driven = part.segment.driven
+    return undefined if driven is None else undefined | ~np.asarray(driven.regular)
 
 
 def _slopes(down: Array, p: Any, segment: Any, distance: Any) -> Array:

@@ -32,8 +32,6 @@ def test_all_195_mechanisms_agree_with_pinocchio():
 @pytest.mark.parametrize("name", gsp.catalogue.design_names())
 def test_the_published_designs_agree(name):
     design = gsp.catalogue.design(name)
-    if design.driven:
-        pytest.skip("no models of drives at the base")
     if design.home is None:
         pytest.skip("no home pose")
     pose = design.home.moved(np.repeat([0.01 * design.rms_radius, 0.02], 3))

@@ -6,6 +6,7 @@ import pytest
 import gsp
 from gsp.errors import InvalidInput
 from gsp.statics import Masses, gravity_wrench, holding_forces
+from tests import driven
 from tests.support import derivative, random_design, random_pose, turn
 
 LEGS = [["D1"] * 6, ["D2", "D3", "D4", "A1", "D4 A1"], ["D1", "D2", "D3", "D4", "D1", "D1", "D2"]]
@@ -35,6 +36,49 @@ def test_the_wrench_is_the_slope_of_the_potential_energy(legs):
     np.testing.assert_allclose(found, -slope, atol=1e-8)
     forces = holding_forces(design, pose, masses, DOWN)
     np.testing.assert_allclose(design.at(pose).wrench(forces), -found, atol=1e-9)
+
+
+def lower_links(design, masses, posture):
+    """Centres of carriages and of cranks, turned by Rodrigues' formula, and of lower links."""
+    found = posture.segments
+    centres = found.base_feet + masses.lower_centre[:, None] * found.direction
+    for row, (leg, _) in enumerate(design.rows):
+        drive, s, a = design.drives[leg], design.base_directions[leg], design.base_points[leg]
+        q = posture.joints[..., row, None]
+        if isinstance(drive, gsp.Slider):
+            centres[..., leg, :] = a + (q + 0.3) * s + [0.1, 0.2, 0.3]  # wherever it is
+        elif isinstance(drive, gsp.Crank):
+            across = np.array(drive.arm) - s * (s @ drive.arm)
+            point = masses.lower_centre[leg] * across / np.linalg.norm(across)
+            turned = point * np.cos(q) + np.cross(s, point) * np.sin(q)
+            centres[..., leg, :] = a + turned + 0.7 * s
+    return centres
+
+
+@pytest.mark.parametrize("name", driven.DESIGNS)
+def test_carriages_cranks_and_rods_have_the_slope_of_their_potential_energy(name):
+    """Also with counterweights, whose centres are on the other side of the axis."""
+    rng = np.random.default_rng(4)
+    design, pose = driven.DESIGNS[name], driven.near_home(driven.DESIGNS[name], 2)
+    numbers = rng.uniform(0.1, 1.0, (4, design.n_legs))
+    numbers[1, ::2] *= -1.0
+    masses = Masses(2.5, [0.1, -0.2, 0.4], *numbers)
+
+    def energy(pose):
+        posture = design.at(pose)
+        found = posture.segments
+        platform = pose.position + pose.rotation @ masses.centre
+        lower = lower_links(design, masses, posture)
+        upper = found.platform_feet - masses.upper_centre[:, None] * found.direction
+        legs = masses.lower * (lower @ DOWN) + masses.upper * (upper @ DOWN)
+        return -masses.platform * platform @ DOWN - legs.sum(axis=-1)
+
+    found = gravity_wrench(design, pose, masses, DOWN)
+    np.testing.assert_allclose(found, -derivative(energy, pose), atol=1e-7)
+    forces = holding_forces(design, pose, masses, DOWN)
+    np.testing.assert_allclose(design.at(pose).wrench(forces), -found, atol=1e-9)
+    many = gsp.Pose(np.repeat(pose.position[:1], 800, axis=0), pose.rotation[0])
+    np.testing.assert_array_equal(gravity_wrench(design, many, masses, DOWN)[799], found[0])
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1e3])

@@ -8,14 +8,16 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gsp.bridges.linkage import Chain, Motion
 from gsp.bridges.markup import Node, joined
+from gsp.bridges.motions import Chain, Motion
 from gsp.bridges.shapes import Capsule
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
-# Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
+# Capsules that are shorter [m] are written as spheres; they have no direction.
 SHORTEST_CAPSULE = 1e-13
+# Those that are shorter [m] are written with a frame: MuJoCo refuses ends within 1e-7 m.
+SHORTEST_BY_ENDS = 1.01e-7
 # Largest height and width of a picture of a model, in pixels.
 LARGEST_PICTURE = (1200, 1600)
 COLOURS = MappingProxyType(
@@ -28,6 +30,8 @@ COLOURS = MappingProxyType(
         "D4": "0.10 0.55 0.75 1",
         "A1": "0.55 0.30 0.65 1",
         "D4 A1": "0.35 0.35 0.80 1",
+        "PSS": "0.48 0.36 0.00 1",
+        "RSS": "0.70 0.20 0.45 1",
         "rod": "0.75 0.77 0.80 1",
     }
 )
@@ -63,7 +67,10 @@ def add_geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) ->
             "mass": repr(part.mass),
             "rgba": COLOURS[colour],
         }
-        if part.length * unit > SHORTEST_CAPSULE:
+        if SHORTEST_CAPSULE < part.length * unit <= SHORTEST_BY_ENDS:
+            shape["size"] = joined(np.array([part.radius, 0.5 * part.length]) * unit)
+            shape |= frame_of(part.frame, unit)
+        elif part.length * unit > SHORTEST_BY_ENDS:
             shape["fromto"] = joined(np.concatenate((part.start, part.end)) * unit)
         else:
             shape |= {"type": "sphere", "pos": joined(part.start * unit)}

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.bridges.drives import Drives, JointLimit, joint_limits
-from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.linkage import linkage
 from gsp.bridges.markup import Node, joined
+from gsp.bridges.motions import Chain, Motion, displacements
 from gsp.bridges.mujoco.elements import (
     LARGEST_PICTURE,
     add_body,
@@ -73,7 +74,7 @@ def to_mjcf(
     Parameters
     ----------
     design : Design
-        Any mechanism, redundant ones included.
+        Any mechanism, redundant ones and drives at the base included.
     pose : Pose
         A single pose, at which all legs are defined.
     solids : Solids or None
@@ -129,7 +130,7 @@ def to_mjcf(
     for chain in chains:
         _add_leg(world, chain, bodies, unit)
     _add_platform(world, chains, pose, bodies, unit)
-    _close(root, chains)
+    _close(root, chains, unit)
     _actuate(root, chains, frequency, {"slide": mass, "turn": inertia}, unit)
     _limit(root, chains, joint_limits(design, drives, unit), unit)
     _add_sensors(root, chains)
@@ -158,8 +159,8 @@ def _check_masses(bodies: Mapping[str, tuple[Capsule, ...]], unit: float) -> Non
 
 def _check_reach(chains: Iterable[Chain], size: float) -> None:
     for chain in chains:
-        lines = (chain.base, chain.leg.base_line), (chain.platform, chain.leg.platform_line)
-        reach = max((abs(float(joint[0].value)) for joint, line in lines if line), default=0.0)
+        joints = (motion for motion in chain.base + chain.platform if not motion.active)
+        reach = max(map(abs, displacements(joints)), default=0.0)
         if not reach <= LARGEST_REACH * size:
             wanted = f"a foot within {LARGEST_REACH:g} sizes of the anchors, which MuJoCo needs"
             got = f"one at {reach / size:.3g} sizes (lines that are nearly parallel)"
@@ -240,7 +241,7 @@ def _add_platform(
             add_geoms(ball, bodies[f"{chain.name}_ball"], "platform", unit)
 
 
-def _close(root: Node, chains: Iterable[Chain]) -> None:
+def _close(root: Node, chains: Iterable[Chain], unit: float) -> None:
     equality = ElementTree.SubElement(root, "equality")
     for chain in chains:
         ends = {"name": chain.name, "body2": "platform"}
@@ -248,7 +249,8 @@ def _close(root: Node, chains: Iterable[Chain]) -> None:
             ends |= {"body1": f"{chain.name}_rail"}
             ElementTree.SubElement(equality, "weld", ends)
         else:
-            ends |= {"body1": f"{chain.name}_upper", "anchor": "0 0 0"}
+            anchor = " ".join(f"{x:.17g}" for x in chain.platform[0].offset * unit)
+            ends |= {"body1": f"{chain.name}_upper", "anchor": anchor}
             ElementTree.SubElement(equality, "connect", ends)
 
 
@@ -313,4 +315,4 @@ def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> No
 
 
 def _active(chains: Iterable[Chain]) -> list[Motion]:
-    return [motion for chain in chains for motion in chain.middle if motion.active]
+    return [motion for chain in chains for motion in chain.motions if motion.active]

@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gsp.bridges.linkage import linkage
+from gsp.bridges.motions import Chain
 from gsp.bridges.mujoco.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
-from gsp.bridges.rates import LegRates, Rates, slide_joints
+from gsp.bridges.rates import LegRates, Rates, check_drives, slide_joints
 from gsp.bridges.solids import Solids
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
-from gsp.model.legs import Leg
 
 if TYPE_CHECKING:
     import mujoco
@@ -39,10 +40,14 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
     ------
     MissingSoftware
         If MuJoCo is not installed.
+    InvalidInput
+        If a drive at the base is singular at the pose.
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
     """
     mujoco = load_mujoco()
+    chains = linkage(design, pose)
+    check_drives(design, pose)
     try:
         model, data = load(design, pose)
     except InvalidInput as error:
@@ -63,7 +68,7 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
     return Rates(
         largest_gap(data) / min(metres * design.rms_radius, 1.0),
         speeds / metres_of(design, None)[:, None],
-        tuple(_leg(model, data, rates, leg, i, metres) for i, leg in enumerate(design.legs, 1)),
+        tuple(_leg(model, data, rates, chain, metres) for chain in chains),
     )
 
 
@@ -82,20 +87,24 @@ def _loop_rates(model: mujoco.MjModel, data: mujoco.MjData, pose: Pose, metres: 
 
 
 def _leg(
-    model: mujoco.MjModel, data: mujoco.MjData, rates: Array, leg: Leg, number: int, metres: float
+    model: mujoco.MjModel, data: mujoco.MjData, rates: Array, chain: Chain, metres: float
 ) -> LegRates:
-    name = f"leg{number}"
-    lower = model.body(f"{name}_lower").id
-    spin = np.empty((3, model.nv))
-    load_mujoco().mj_jacBody(model, data, None, spin, lower)
+    name = chain.name
+
+    def spin(link: str) -> Array:
+        rows = np.empty((3, model.nv))
+        load_mujoco().mj_jacBody(model, data, None, rows, model.body(f"{name}_{link}").id)
+        return np.asarray(rows @ rates)
+
     names = {
         "base": f"{name}_base_slide",
         "platform": f"{name}_platform_slide",
         "middle": f"{name}_slide",
     }
-    slides = [rates[model.joint(names[joint]).dofadr[0]] for joint in slide_joints(leg)]
+    slides = [rates[model.joint(names[joint]).dofadr[0]] for joint in slide_joints(chain.leg)]
     return LegRates(
-        data.xmat[lower].reshape(3, 3)[:, 2],
-        spin @ rates,
+        data.body(f"{name}_upper").xmat.reshape(3, 3)[:, 2],
+        spin("upper"),
         np.array(slides).reshape(-1, 6) / metres,
+        np.zeros((3, 6)) if chain.turns_from_base else spin("lower"),
     )

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.bridges.linkage import linkage, spans
+from gsp.bridges.linkage import linkage
+from gsp.bridges.motions import spans
 from gsp.bridges.mujoco.elements import SHORTEST_CAPSULE, configuration, wxyz
 from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.mujoco.simulation import compiled, load_mujoco

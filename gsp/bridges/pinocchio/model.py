@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gsp.bridges.drives import Drives, joint_limits
-from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.linkage import linkage
+from gsp.bridges.motions import Chain, Motion
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.geometry.copies import read_only_tuple
@@ -48,6 +49,7 @@ def to_pinocchio(
     The platform is a free-flyer "platform". The joints of leg i are "leg{i}_base", the actuated
     ones under their names in `Posture.joint_names` ("d1", "theta4"), for CCC legs the passive
     freedom of the middle joint ("leg{i}_turn" or "leg{i}_slide"), and "leg{i}_platform".
+    Legs that are driven at the base have the actuated joint at the base, and "leg{i}_tip".
     Spherical joints are spherical; cylindrical ones at base and platform are a composite of slide
     and turn. The value of an actuated joint is the joint variable itself. Lengths keep the unit of
     the design, and so do gravity and inertias (kg · unit²). Forces are in kg · unit/s² then: in
@@ -56,7 +58,7 @@ def to_pinocchio(
     Parameters
     ----------
     design : Design
-        Any mechanism, redundant ones included.
+        Any mechanism, redundant ones and drives at the base included.
     pose : Pose
         A single pose, at which all legs are defined.
     solids : Solids or None
@@ -91,19 +93,23 @@ def to_pinocchio(
     chains = linkage(design, pose)
     metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
-    machine = _machine(design, pose, chains)
+    machine = machine_of(design, pose, chains)
     machine.model.gravity.linear = np.array(GRAVITY) / metres
     _limit(machine.model, design, drives, metres)
-    _add_inertias(machine.model, bodies)
+    _add_inertias(machine.model, chains, bodies)
     return machine
 
 
-def without_masses(design: Design, pose: Pose) -> PinocchioModel:
-    """Return the joints and loops of `to_pinocchio`, for which no unit needs to be known."""
-    return _machine(design, pose, linkage(design, pose))
+def machine_of(design: Design, pose: Pose, chains: Sequence[Chain]) -> PinocchioModel:
+    """Return the joints and loops of `to_pinocchio`, for which no unit needs to be known.
 
-
-def _machine(design: Design, pose: Pose, chains: Sequence[Chain]) -> PinocchioModel:
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape ()
+    chains : sequence of Chain
+        Those of `linkage` at the pose.
+    """
     pin = import_pinocchio()
     model = pin.Model()
     model.name = design.name or design.mechanism.name
@@ -130,15 +136,38 @@ def _machine(design: Design, pose: Pose, chains: Sequence[Chain]) -> PinocchioMo
 
 def _add_chain(model: Any, chain: Chain) -> int:
     """Add the joints of a leg, and return the number of the last."""
-    joint, placement = 0, chain.foot.to_se3()
-    groups = [(f"{chain.name}_base", chain.base)]
-    groups += [(motion.name, (motion,)) for motion in chain.middle]
-    groups += [(f"{chain.name}_platform", chain.platform)]
-    for name, motions in groups:
-        joint = model.addJoint(joint, _joint(motions), placement, name)
+    joint, place = 0, chain.foot
+    for name, motions in _groups(chain):
+        place = place.compose(Pose(motions[0].offset))
+        joint = model.addJoint(joint, _joint(motions), place.to_se3(), name)
         model.addJointFrame(joint)
-        placement = type(placement).Identity()
+        place = Pose(np.zeros(3))
     return joint
+
+
+def _groups(chain: Chain) -> list[tuple[str, tuple[Motion, ...]]]:
+    """Return the joints of a leg with their names."""
+    return [
+        (_name(chain.base, f"{chain.name}_base"), chain.base),
+        *((motion.name, (motion,)) for motion in chain.middle),
+        (_name(chain.platform, f"{chain.name}_platform"), chain.platform),
+    ]
+
+
+def _name(motions: tuple[Motion, ...], composite: str) -> str:
+    return motions[0].name if len(motions) == 1 else composite
+
+
+def joint_of_link(chain: Chain, link: str) -> str:
+    """Return the name of the joint that carries a link of a leg.
+
+    Parameters
+    ----------
+    chain : Chain
+    link : "lower", "upper", "rail" or "ball"
+    """
+    names = [name for name, _ in _groups(chain)]
+    return {"lower": names[0], "upper": names[-2]}.get(link, names[-1])
 
 
 def _joint(motions: tuple[Motion, ...]) -> Any:
@@ -167,20 +196,18 @@ def _value(motion: Motion) -> Array:
     return np.array([motion.value])
 
 
-def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None:
+def _add_inertias(
+    model: Any, chains: Sequence[Chain], bodies: Mapping[str, tuple[Capsule, ...]]
+) -> None:
     pin = import_pinocchio()
-    for name, parts in bodies.items():
-        if name in ("base", "split"):
-            continue
-        leg, _, link = name.partition("_")
-        # A leg's lower link follows its first joint, the rail or ball its last, the upper the one
-        # before.
-        end = f"{leg}_platform"
-        place = {"": leg, "lower": f"{leg}_base", "rail": end, "ball": end}.get(link)
-        joint = model.parents[model.getJointId(end)] if place is None else model.getJointId(place)
-        body = Body.of(parts)
+    joints = {"platform": "platform"}
+    for chain in chains:
+        for link in ("lower", "upper", "rail", "ball"):
+            joints[f"{chain.name}_{link}"] = joint_of_link(chain, link)
+    for name in [name for name in bodies if name in joints]:
+        body = Body.of(bodies[name])
         inertia = pin.Inertia(body.mass, body.centre, body.inertia)
-        model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
+        model.appendBodyToJoint(model.getJointId(joints[name]), inertia, pin.SE3.Identity())
 
 
 def _limit(model: Any, design: Design, drives: Drives | None, metres: float) -> None:

@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from gsp.bridges.pinocchio.model import PinocchioModel, without_masses
-from gsp.bridges.rates import LegRates, Rates, slide_joints
+from gsp.bridges.linkage import linkage
+from gsp.bridges.motions import Chain
+from gsp.bridges.pinocchio.model import PinocchioModel, joint_of_link, machine_of
+from gsp.bridges.rates import LegRates, Rates, check_drives, slide_joints
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
-from gsp.model.legs import Leg
 
 
 def pinocchio_rates(design: Design, pose: Pose) -> Rates:
@@ -31,15 +32,19 @@ def pinocchio_rates(design: Design, pose: Pose) -> Rates:
 
     Raises
     ------
+    InvalidInput
+        If a drive at the base is singular at the pose.
     UndefinedPosture, InvalidInput
         See `to_pinocchio`.
     """
-    machine = without_masses(design, pose)
+    chains = linkage(design, pose)
+    check_drives(design, pose)
+    machine = machine_of(design, pose, chains)
     data = machine.model.createData()
     closure = closure_residual(machine, data, design.rms_radius)
     rates = loop_rates(machine, data, pose)
     actuators = np.stack([_row(machine.model, rates, name) for name in design.joint_names])
-    legs = tuple(_leg(machine, data, rates, leg, i) for i, leg in enumerate(design.legs, 1))
+    legs = tuple(_leg(machine, data, rates, chain) for chain in chains)
     return Rates(closure, actuators, legs)
 
 
@@ -71,8 +76,21 @@ def loop_rates(machine: PinocchioModel, data: Any, pose: Pose) -> Array:
     rates[:6] = platform
     for i, columns in enumerate(_leg_columns(machine)):
         at = slice(6 * i, 6 * i + 6)
-        rates[columns] = np.linalg.lstsq(rows[at, columns], -rows[at, :6] @ platform)[0]
+        rates[columns] = _solved(rows[at, columns], -rows[at, :6] @ platform)
     return rates
+
+
+def _solved(rows: Array, right: Array) -> Array:
+    """Return the least x with rows · x = right; where lengths are large or small numbers, too."""
+    heights = _or_one(np.abs(rows).max(axis=1, keepdims=True))
+    even = rows / heights
+    widths = _or_one(np.sqrt(np.sum(even**2, axis=0)))
+    found = np.linalg.lstsq(even / widths, right / heights)[0]
+    return np.asarray(found / widths[:, None])
+
+
+def _or_one(sizes: Array) -> Array:
+    return np.where(sizes > 0.0, sizes, 1.0)
 
 
 def _leg_columns(machine: PinocchioModel) -> list[slice]:
@@ -87,15 +105,20 @@ def _row(model: Any, rates: Array, name: str) -> Array:
     return np.asarray(rates[model.joints[model.getJointId(name)].idx_v])
 
 
-def _leg(machine: PinocchioModel, data: Any, rates: Array, leg: Leg, number: int) -> LegRates:
+def _leg(machine: PinocchioModel, data: Any, rates: Array, chain: Chain) -> LegRates:
     pin = import_pinocchio()
-    model, name = machine.model, f"leg{number}"
-    link = model.getJointId(f"{name}_base")
+    model, name = machine.model, chain.name
     world = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+
+    def spin(link: str) -> Array:
+        joint = model.getJointId(joint_of_link(chain, link))
+        return np.asarray((pin.getJointJacobian(model, data, joint, world) @ rates)[3:])
+
     names = {"base": f"{name}_base", "platform": f"{name}_platform", "middle": f"{name}_slide"}
-    slides = [_row(model, rates, names[joint]) for joint in slide_joints(leg)]
+    slides = [_row(model, rates, names[joint]) for joint in slide_joints(chain.leg)]
     return LegRates(
-        data.oMi[link].rotation[:, 2],
-        (pin.getJointJacobian(model, data, link, world) @ rates)[3:],
+        data.oMi[model.getJointId(joint_of_link(chain, "upper"))].rotation[:, 2],
+        spin("upper"),
         np.array(slides).reshape(-1, 6),
+        np.zeros((3, 6)) if chain.turns_from_base else spin("lower"),
     )
