@@ -27,6 +27,8 @@ RESTORING_STEPS = 40
 # Lengths of the steps that look for a shorter vector around an end, their least gain, as a share
 # of the squared length, and how often the descent may start again from one.
 PROBES, LEAST_GAIN, PROBE_ROUNDS = (1e-2, 1e-3), 1e-8, 8
+# Most steps of the descent from such a step: where functions are not smooth it does not converge.
+PROBE_STEPS = 10
 # Values below which a function is active, the rest of x = Gᵀλ at a stationary vector as a share of
 # |x|, the step of differences of slopes, and the second derivative below which there are probes.
 ACTIVE, STATIONARY, DIFFERENCE, LEAST_BEND = 1e-6, 1e-5, 1e-5, 1e-2
@@ -146,7 +148,7 @@ def _violation(of: Functions, x: Array, part: slice, first: int) -> float:
     return float(np.linalg.norm(np.minimum(slacks[part], 0.0)))
 
 
-def descended(of: Functions, x: Array) -> Array:
+def descended(of: Functions, x: Array, steps: int = DESCENT_STEPS) -> Array:
     """Return where a descent from a feasible vector ends: feasible, and not longer.
 
     Each step is that to the shortest vector that satisfies the functions to first order, or a part
@@ -158,13 +160,15 @@ def descended(of: Functions, x: Array) -> Array:
     of : Functions
     x : (6,) array
         Which satisfies them.
+    steps : int
+        At most.
 
     Returns
     -------
     (6,) array
     """
     share = 1.0
-    for _ in range(DESCENT_STEPS):
+    for _ in range(steps):
         rows = of.slopes(x)
         shortest = closest(rows, rows @ x - np.maximum(of.slacks(x), 0.0))
         if shortest is None or norm(shortest - x) <= LAST_STEP:
@@ -250,7 +254,7 @@ def _probe(of: Functions, x: Array) -> Array | None:
             if begin is None:
                 continue
             # A step along a surface that curves away leaves it: the descent leads back to it.
-            end = descended(of, of.wrapped(begin))
+            end = descended(of, of.wrapped(begin), PROBE_STEPS)
             if float(end @ end) < (1.0 - LEAST_GAIN) * float(x @ x):
                 return end
     return None

@@ -86,7 +86,8 @@ def nearest(
     nearer pose is not proven. Limits hold to 1e-9 of the size.
 
     The searches take lengths rounded to nine digits, in units of the size and about the centres of
-    the anchors. So the result is the same in every unit and for all origins of the frames. Other
+    the anchors. So the result is the same in every unit and for all origins of the frames, unless
+    the limits depend on these, as thresholds on some indices do (docs/conventions.md). Other
     axes of the frames, or another order of the legs, may lead to another local minimum.
 
     Drives at the base must reach the pose on their branches, beyond it by at least 1e-8 of the

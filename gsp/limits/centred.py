@@ -27,8 +27,8 @@ class CentredLimits:
     Attributes
     ----------
     design : Design
-        Of size 1, with the base frame at the centre of the base anchors. The platform frame is at
-        the centre of the platform anchors, unless the limits are those of the platform origin.
+        Of size 1, with the frames at the centres of the anchors, unless the limits depend on their
+        origins.
     limits : Limits
         The limits in these frames and this unit.
     size : float [unit of the given design]
@@ -117,7 +117,8 @@ def _rounded_limits(limits: Limits) -> Limits:
 def centred_limits(design: Design, limits: Limits) -> CentredLimits:
     """Return a design and its limits in units of its size, about its centres.
 
-    The unit stays where an index of a threshold changes with it by no power ("mixed").
+    What a limit depends on stays: the unit where an index of a threshold changes with it by no
+    power ("mixed"), and the origins where an index changes with them.
 
     Parameters
     ----------
@@ -131,11 +132,12 @@ def centred_limits(design: Design, limits: Limits) -> CentredLimits:
     """
     mixed = any(index.unit(design) == "mixed" for index, _, _ in limits.thresholds)
     size = 1.0 if mixed else design.rms_radius
-    base, platform = (
-        points.mean(axis=0) for points in (design.base_points, design.platform_points)
-    )
+    effects = [index.invariance for index, _, _ in limits.thresholds]
+    kept = any(effect.base_shift == "changes" for effect in effects)
+    base = design.base_points.mean(axis=0) * (not kept)
     # Limits of the position are those of the platform origin, which has to stay.
-    platform = platform * (limits.position is None)
+    kept = any(effect.platform_shift == "changes" for effect in effects)
+    platform = design.platform_points.mean(axis=0) * (limits.position is None and not kept)
     home = design.home
     if home is not None:
         home = Pose(home.position - base, home.rotation)

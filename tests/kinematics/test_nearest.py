@@ -107,3 +107,24 @@ def test_it_is_never_farther_than_an_allowed_home_pose_and_no_step_from_it_is_ne
     allowed = gsp.feasible(design, around, limits).ok
     assert allowed.any()
     assert distance(around)[allowed].min() >= near.distance - 1e-8
+
+
+@pytest.mark.parametrize("name", ["CDN", "CDN_CL", "CDN_OE", "F_max", "SD", "k_x", "σ_min"])
+def test_thresholds_are_those_of_the_design_wherever_its_origins_are(name):
+    """The index is 2 % better than at home, by the posture of the design in its own frames."""
+    design = gsp.hexapod(2.0, 0.25, 1.0, 0.4, 1.5).with_origin([0.3, -0.2, 0.7])
+    shift = np.array([3.0, -2.0, 1.0])
+    home = Pose(design.home.position + shift, design.home.rotation)
+    design = design.replace(
+        base_points=design.base_points + shift, home=home, ellipsoid=gsp.Ellipsoid([0.4, 0.5, 0.6])
+    )
+
+    def value(pose):
+        return float(gsp.evaluate(design, pose, [name], length=1.2).iloc[0, 0])
+
+    upward = gsp.indices.INDICES[gsp.indices.index_name(name)].better == "higher"
+    better = value(home) * (1.02 if upward else 0.98)
+    limits = gsp.Limits(indices=[f"{name} {'>=' if upward else '<='} {better!r}"], length=1.2)
+    found = gsp.nearest(design, home, limits, starts=2)
+    assert value(found.pose) == pytest.approx(better, rel=1e-6)
+    assert found.distance > 0.0
