@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.bridges.reading.chains import find_platform, paths
-from gsp.bridges.reading.legs import FoundLeg, anchors_on_platform, leg_of
+from gsp.bridges.reading.driven import in_axes
+from gsp.bridges.reading.ends import FoundLeg, anchors_on_platform
+from gsp.bridges.reading.legs import leg_of
 from gsp.bridges.reading.linkages import Linkage
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
@@ -49,7 +51,7 @@ def design_of(linkage: Linkage, name: str | None = None) -> Design:
     ]
     feet = [anchors_on_platform(leg.base, Pose(np.zeros(3)), base) for leg in legs]
     return Design(
-        [leg.constraints for leg in legs],
+        [in_axes(leg.drive, base.rotation) if leg.drive else leg.constraints for leg in legs],
         np.array([x.point for x in feet]),
         np.array([x.point for x in heads]),
         base_directions=np.array([x.line for x in feet]),

@@ -61,7 +61,7 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
         reason = " ".join(str(error).split())[:LONGEST_REASON]
         raise MalformedFile(expected(str(path), "a model that MuJoCo reads", reason)) from error
     data = program.MjData(model)
-    program.mj_forward(model, data)
+    program.mj_kinematics(model, data)  # forces may not exist
     names = [_name(program, model, "BODY", i) for i in range(model.nbody)]
     places = {
         name: Pose.from_quaternion(data.xpos[i], np.roll(data.xquat[i], -1))

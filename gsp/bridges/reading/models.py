@@ -37,8 +37,9 @@ def read_model(
 
     A model is a mechanism whose legs are chains between two bodies. Joints at the ends of a leg are
     balls, two or three turns whose axes meet (S), or a slide and a turn along one line (C). Between
-    them is a slide, for CCC legs with a turn. The pose of the file is the home pose. Limits of
-    actuated joints are the strokes.
+    them is a slide, for CCC legs with a turn. A slide or a turn at the base with two spherical
+    joints behind it is a leg driven there, by a slider or a crank. The pose of the file is the home
+    pose. Limits of actuated joints are the strokes.
 
     Parameters
     ----------
@@ -57,7 +58,8 @@ def read_model(
     -------
     Design
         In metres. Anchors of lines lie where the joint is, unless the file states where the slide
-        counts zero (MJCF, and URDF and SDF with the file that `export` writes beside them).
+        counts zero (MJCF, and URDF and SDF with the file that `export` writes beside them). Travels
+        and angles of drives at the base count from there, too.
 
     Raises
     ------

@@ -1,0 +1,116 @@
+"""The leg driven at the base that a chain of joints is: PSS with a slider, or RSS with a crank."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from gsp.bridges.reading.ends import NONE, TOLERANCE, End, FoundLeg, check_that, joint_at_end
+from gsp.bridges.reading.linkages import Freedom
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross, norm
+from gsp.model.drives import Crank, Drive, Slider
+
+
+def is_driven(freedoms: Sequence[Freedom]) -> bool:
+    """Return whether a chain begins with one slide or turn, and nothing behind it slides.
+
+    Parameters
+    ----------
+    freedoms : sequence of Freedom
+        From base to platform, not empty.
+    """
+    behind = freedoms[1:]
+    return freedoms[0].kind != "ball" and all(freedom.kind != "slide" for freedom in behind)
+
+
+def driven_leg(freedoms: Sequence[Freedom], where: str, size: float) -> FoundLeg:
+    """Return the leg that a slide or a turn and two spherical joints are.
+
+    The travel or angle counts from where the file has its zero; else from its configuration. Angles
+    whose limits are not within (−π, π] count from the middle of them. The branch is that of the
+    configuration.
+
+    Parameters
+    ----------
+    freedoms : sequence of Freedom
+        From base to platform.
+    where : str
+        The leg, for errors.
+    size : float [m]
+        Of the mechanism.
+
+    Returns
+    -------
+    FoundLeg
+        In the axes of the world, on the side of the base.
+
+    Raises
+    ------
+    InvalidInput
+        If the joints behind the first are not two spherical joints, no actuator drives it, or the
+        tip of a crank is on its axis.
+    """
+    first = freedoms[0]
+    tip, rest = joint_at_end(freedoms[1:], where, size, "tip")
+    top, rest = joint_at_end(tuple(reversed(rest)), where, size, "platform")
+    if rest:
+        got = ", ".join(f"{x.kind} {brief(x.name)}" for x in reversed(rest))
+        wanted = "two spherical joints behind the first joint"
+        raise InvalidInput(expected(where, wanted, f"besides them {got}"))
+    if first.active is False:
+        wanted = f"an actuator of {brief(first.name)}, with which the leg begins"
+        raise InvalidInput(expected(where, wanted, "none"))
+    value = _counted(first)
+    rod = top.point - tip.point
+    if first.kind == "turn":
+        off_axis = float(norm(cross(first.axis, tip.point - first.point)))
+        check_that(off_axis > TOLERANCE * size, where, "a tip beside the axis of the first joint")
+    make = _slider if first.kind == "slide" else _crank
+    point, slope, drive = make(first, value, tip.point, float(norm(rod)))
+    if rod @ slope < 0.0:
+        drive = type(drive)(**{**vars(drive), "branch": -1})
+    low, high = (value + x if np.isfinite(x) else np.nan for x in (first.low, first.high))
+    return FoundLeg("D1", End(point, first.axis), End(top.point, NONE), [(low, high)], drive)
+
+
+def _counted(first: Freedom) -> float:
+    """Return what the travel or angle counts in the configuration of the file."""
+    value = 0.0 if np.isnan(first.value) else first.value
+    if first.kind == "slide":
+        return value
+    value = math.remainder(value, math.tau)
+    middle = 0.5 * (first.low + first.high)
+    if np.isfinite(middle) and max(value + first.high, -value - first.low) > math.pi:
+        return -middle
+    return value
+
+
+def _slider(first: Freedom, value: float, tip: Array, rod: float) -> tuple[Array, Array, Drive]:
+    """Return base point, velocity of the tip per rate of the joint, and the drive."""
+    return tip - value * first.axis, first.axis, Slider(rod=rod)
+
+
+def _crank(first: Freedom, value: float, tip: Array, rod: float) -> tuple[Array, Array, Drive]:
+    arm = tip - first.point
+    back = Pose(np.zeros(3)).moved(np.concatenate((np.zeros(3), -value * first.axis)))
+    drive = Crank(arm=tuple((back.rotation @ arm).tolist()), rod=rod)
+    return first.point, cross(first.axis, arm), drive
+
+
+def in_axes(drive: Drive, rotation: Array) -> Drive:
+    """Return a drive in the axes of a body, of which it is given in those of the world.
+
+    Parameters
+    ----------
+    drive : Slider or Crank
+    rotation : (3, 3) array
+        Of the body in the world.
+    """
+    if isinstance(drive, Slider):
+        return drive
+    arm = rotation.T @ np.array(drive.arm)
+    return Crank(arm=tuple(arm.tolist()), rod=drive.rod, branch=drive.branch)
