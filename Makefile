@@ -90,8 +90,8 @@ proof: $(VENV)/.installed
 bench: $(VENV)/.installed
 	$(BIN)/python -m benchmarks $(ARGS)
 
-# The last one needs OpenGL: egl or osmesa.
-## draw the pictures of the README, of docs/exploration.md, docs/app.md and docs/bridges.md
+# The last two need OpenGL: egl or osmesa.
+## draw the pictures of the README, of docs/exploration.md, docs/app.md, docs/bridges.md and docs/drives.md
 pictures: $(VENV)/.installed
 	$(BIN)/gsp rank --out results/readme.csv --force
 	mkdir -p docs/images && cp results/readme.png docs/images/ranking.png
@@ -99,6 +99,7 @@ pictures: $(VENV)/.installed
 	$(BIN)/python docs/images/placements.py
 	PYTHONPATH=. $(BIN)/python docs/images/app.py
 	MUJOCO_GL=$${MUJOCO_GL:-egl} $(BIN)/python docs/images/exotic.py
+	MUJOCO_GL=$${MUJOCO_GL:-egl} $(BIN)/python docs/images/driven.py
 
 $(BIN)/pip:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "expected Python >= 3.11, found " + sys.version.split()[0] + "; try make PYTHON=python3.12")'

@@ -70,7 +70,8 @@ def test_without_opengl_the_second_call_raises_the_same_error_as_the_first():
     assert done.stdout.split() in ([], ["GspError"] * 2, ["MissingSoftware"] * 2)
 
 
-def test_the_committed_picture_has_its_script():
+@pytest.mark.parametrize("name", ["exotic", "driven"])
+def test_the_committed_picture_has_its_script(name):
     folder = Path(__file__).parents[2] / "docs" / "images"
-    assert (folder / "exotic.png").read_bytes().startswith(b"\x89PNG")
-    assert (folder / "exotic.py").is_file()
+    assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    assert (folder / f"{name}.py").is_file()
