@@ -15,6 +15,8 @@ from gsp.geometry.vectors import Array, dot, nearest_to_origin
 
 # How far a stiffness may be from symmetric, as a share of its size.
 SYMMETRY = 1e-9
+# Least eigenvalue over the greatest, up to which a stiffness is not told from a singular one.
+ROUNDING = 10.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -121,18 +123,28 @@ def _check_symmetric(matrix: Array) -> None:
 
 
 def _of_definite(matrix: Array) -> tuple[Array, Array]:
-    """Return λ, descending, and t of K t = λ Δ t: (..., 6) and (..., 6, 6)."""
-    try:
-        # Δ t = K t / λ with K = R Rᵀ: the eigenvalues 1/λ of R⁻¹ Δ R⁻ᵀ.
-        inverse = np.linalg.inv(np.linalg.cholesky(matrix))
-        swapped = np.roll(inverse, 3, axis=-1)
-        inverses, vectors = np.linalg.eigh(swapped @ np.swapaxes(inverse, -1, -2))
-    except np.linalg.LinAlgError as error:
-        got = "one that is not (of a singular posture?)"
-        raise InvalidInput(expected("stiffness", "positive definite matrices", got)) from error
+    """Return λ, descending, and t of K t = λ Δ t: (..., 6) and (..., 6, 6).
+
+    With K = R Rᵀ and t = Δ R y / λ, the λ are the eigenvalues of Rᵀ Δ R, near singular matrices
+    the large ones to rounding. With t = R⁻ᵀ z, the 1/λ are those of R⁻¹ Δ R⁻ᵀ: the small ones.
+    """
+    sizes = np.linalg.eigvalsh(matrix)
+    if (sizes[..., 0] <= ROUNDING * sizes[..., -1]).any():
+        got = "one that is not, to rounding (of a singular posture?)"
+        raise InvalidInput(expected("stiffness", "positive definite matrices", got))
+    root = np.linalg.cholesky(matrix)
+    inverse = np.linalg.inv(root)
+    swapped = np.roll(root, 3, axis=-2)  # Δ R
+    large, y = np.linalg.eigh(np.swapaxes(root, -1, -2) @ swapped)
+    inverses, z = np.linalg.eigh(np.roll(inverse, 3, axis=-1) @ np.swapaxes(inverse, -1, -2))
+    # Both in descending order.
+    large, y = large[..., ::-1], y[..., ::-1]
     order = np.argsort(-1.0 / inverses, axis=-1)
-    twists = np.swapaxes(inverse, -1, -2) @ vectors
-    return (
-        np.take_along_axis(1.0 / inverses, order, axis=-1),
-        np.take_along_axis(twists, order[..., None, :], axis=-1),
-    )
+    small = np.take_along_axis(1.0 / inverses, order, axis=-1)
+    z = np.take_along_axis(z, order[..., None, :], axis=-1)
+    magnitudes = np.abs(large)
+    middle = np.sqrt(magnitudes.max(axis=-1) * np.abs(small).min(axis=-1))
+    first = magnitudes > middle[..., None]
+    of_large = swapped @ y / np.where(first, large, 1.0)[..., None, :]
+    of_small = np.swapaxes(inverse, -1, -2) @ z
+    return np.where(first, large, small), np.where(first[..., None, :], of_large, of_small)

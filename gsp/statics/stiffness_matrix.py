@@ -162,8 +162,8 @@ def directional_stiffness(
     matrix = compliance(design, pose, k, preload=preload)
     shape = common_shape("direction", wrench.shape[:-1], matrix.shape[:-2])
     wrench = np.broadcast_to(wrench, (*shape, 6))[..., None]
-    given = (np.swapaxes(wrench, -1, -2) @ matrix @ wrench)[..., 0, 0]
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
+        given = (np.swapaxes(wrench, -1, -2) @ matrix @ wrench)[..., 0, 0]
         return np.asarray(1.0 / given)
 
 

@@ -262,6 +262,31 @@ def test_errors_of_redundant_designs_are_those_of_weighted_least_squares():
     assert np.allclose(found.covariance, gain @ np.diag(errors**2) @ gain.T)
 
 
+@pytest.mark.parametrize("turn", [1e-3, 1e-6, 1e-7])
+def test_eigenscrews_near_a_singular_posture_are_those_in_50_digits(turn):
+    """The values are eigenvalues of Δ K; the small one is as far from zero as K determines it."""
+    hexagons = gsp.hexapod(2.0, 0.0, 1.0, 0.0, 1.5)
+    pose = gsp.Pose.from_rpy([0.0, 0.0, 1.5], [0.0, 0.0, np.pi / 2 - turn])
+    matrix = gsp.stiffness(hexagons, pose, 1.0)
+    matrix = 0.5 * (matrix + matrix.T)
+    found = gsp.statics.eigenscrews(matrix)
+    with mp.workdps(50):
+        expected = mp.eig(mp.matrix(np.roll(matrix, 3, axis=0).tolist()), left=False, right=False)
+        expected = sorted((float(mp.re(value)) for value in expected), reverse=True)
+    np.testing.assert_allclose(found.values, expected, rtol=1e-12, atol=1e-15)
+    wrench = matrix @ found.twists
+    back = np.roll(found.twists, 3, axis=0) * found.values
+    np.testing.assert_allclose(wrench, back, atol=1e-13)
+
+
+def test_eigenscrews_of_singular_postures_are_refused():
+    hexagons, rng = gsp.hexapod(2.0, 0.0, 1.0, 0.0, 1.5), np.random.default_rng(4)
+    for height in rng.uniform(0.5, 3.0, 40):
+        pose = gsp.Pose.from_rpy([0.0, 0.0, height], [0.0, 0.0, np.pi / 2])
+        with pytest.raises(InvalidInput, match="to rounding"):
+            gsp.statics.eigenscrews(gsp.stiffness(hexagons, pose, 1.0))
+
+
 @pytest.mark.parametrize("unit", [1e-9, 1e-3, 1.0, 1e6])
 def test_torques_beside_forces_cost_no_digits_of_redundant_designs(unit):
     """One number for all actuators makes the rows of torques 1/unit times those of forces."""

@@ -227,7 +227,8 @@ def save(
     missing = [name for name in columns or () if name not in table]
     if missing:
         names = ", ".join(missing)
-        warn(f"columns left out: {names}: not computed, as a parameter such as --length is missing")
+        why = "not among --indices, or without a parameter that they need, such as --length"
+        warn(f"columns left out: {names}: {why}")
         columns = [name for name in columns or () if name in table] or None
     headings = latex_headings(table)
     write_table(table, path, metadata, columns=columns, headings=headings, overwrite=force)

@@ -75,7 +75,7 @@ def _ellipsoid(plan: Plan) -> str:
         known = any(design.ellipsoid is not None for design in plan.designs)
         return "as the designs record it" if known else "none"
     axes = " × ".join(f"{axis:.4g}" for axis in plan.ellipsoid.semi_axes)
-    return f"semi-axes {axes} {plan.unit}, about the platform origin"
+    return f"semi-axes {axes} {plan.unit}".rstrip() + ", about the platform origin"
 
 
 def left_out(plan: Plan, table: pd.DataFrame, chosen: tuple[str, ...] | None) -> Iterator[str]:

@@ -17,6 +17,7 @@ from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.kinematics import assembly_modes as all_modes
+from gsp.kinematics import travel as travelled
 from gsp.model.posture import Posture
 
 
@@ -129,6 +130,20 @@ def assembly_modes(design: str, joints: Sequence[float]) -> int:
     return len(all_modes(catalogue.design(design), joints).poses.position)
 
 
+def travel(design: str, most: Sequence[float]) -> Array:
+    """Return how far strokes let a platform move both ways from home, along and about each axis.
+
+    Along x, y and z of the base [unit of the design] and about them [°], each alone, through the
+    platform origin, and at most as far as `most` (6,).
+    """
+    placed = posture(design)
+    reached = [
+        min(travelled(placed.design, placed.pose, sign * twist).distance for sign in (1.0, -1.0))
+        for twist in np.eye(6)
+    ]
+    return np.minimum(most, np.concatenate((reached[:3], np.rad2deg(reached[3:]))))
+
+
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
         "joint": joint,
@@ -138,5 +153,6 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "stiffness": stiffness,
         "extensions": extensions,
         "assembly_modes": assembly_modes,
+        "travel": travel,
     }
 )

@@ -18,7 +18,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.published.quantities.common import posture
 
-COMBINATIONS, ANGLES_OF_DIRECTIONS = 25, 50
+COMBINATIONS, ANGLES_OF_DIRECTIONS = 2**5, 50
 
 
 def pure_strokes(design: str, translation: float, rotation: float) -> Array:
@@ -71,7 +71,7 @@ def _with_home(design: str) -> tuple[Design, Pose]:
 
 
 def _combinations(home: Pose, translation: float, rotation: float) -> Pose:
-    """Return the poses of all combinations of signs: (25,)."""
+    """Return the poses of all combinations of five signs: (32,)."""
     digits = np.arange(COMBINATIONS)[:, None] >> np.arange(4, -1, -1) & 1
     steps = (2 * digits - 1) * np.array([translation] * 3 + [rotation] * 2)
     turns = np.concatenate((steps[:, 3:], np.zeros((COMBINATIONS, 1))), axis=1)
