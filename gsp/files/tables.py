@@ -53,6 +53,7 @@ _FORMATS = (
 )
 
 # The name of a mechanism, such as "D1^2 D2 D4 A1^2".
+_JOINT = re.compile(r"(d|theta)(\d+)")
 _MECHANISM = re.compile(r"[DA]\d(\^\d)?( [DA]\d(\^\d)?)*")
 
 FORMATS = MappingProxyType({form.suffix: form for form in _FORMATS})
@@ -180,19 +181,32 @@ def _to_latex(frame: pd.DataFrame, path: Path, headings: Mapping[str, str]) -> N
 
 
 def _latex(value: Any) -> str:
-    r"""Return a cell: the name of a mechanism or a number as a formula, another text escaped.
+    r"""Return a cell: the name of a mechanism or joint, or a number, as a formula, or a text.
 
-    >>> print(_latex("D1^6"), _latex("D2 A1^2"), _latex("toz_2016"), _latex(1 / 3))
-    $D_1^{6}$ $D_2\,A_1^{2}$ toz\_2016 0.3333333
+    >>> print(_latex("D1^6"), _latex("D2 A1^2"), _latex("toz_2016"), _latex(1 / 3), _latex("d1"))
+    $D_1^{6}$ $D_2\,A_1^{2}$ toz\_2016 0.3333333 $d_{1}$
     """
     if isinstance(value, float):
         return _number(value)
     text = str(value)
+    if _JOINT.fullmatch(text):
+        return joint_symbol(text)
     if not _MECHANISM.fullmatch(text):
         return escaped(text)
     parts = [part.partition("^") for part in text.split()]
     powers = [f"{name[0]}_{name[1:]}" + (f"^{{{n}}}" if n else "") for name, _, n in parts]
     return "$" + r"\,".join(powers) + "$"
+
+
+def joint_symbol(name: str) -> str:
+    r"""Return the name of a joint variable as a formula in LaTeX.
+
+    >>> print(joint_symbol("d1"), joint_symbol("theta12"))
+    $d_{1}$ $\theta_{12}$
+    """
+    stem, number = _JOINT.fullmatch(name).groups()  # type: ignore[union-attr]
+    symbol = r"\theta" if stem == "theta" else stem
+    return f"${symbol}_{{{number}}}$"
 
 
 def _number(value: float) -> str:

@@ -16,7 +16,7 @@ from gsp.geometry.vectors import Array, dot, nearest_to_origin
 # How far a stiffness may be from symmetric, as a share of its size.
 SYMMETRY = 1e-9
 # Least eigenvalue over the greatest, up to which a stiffness is not told from a singular one.
-ROUNDING = 10.0 * np.finfo(float).eps
+DEFINITE_SHARE = 10.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -129,7 +129,7 @@ def _of_definite(matrix: Array) -> tuple[Array, Array]:
     the large ones to rounding. With t = R⁻ᵀ z, the 1/λ are those of R⁻¹ Δ R⁻ᵀ: the small ones.
     """
     sizes = np.linalg.eigvalsh(matrix)
-    if (sizes[..., 0] <= ROUNDING * sizes[..., -1]).any():
+    if (sizes[..., 0] <= DEFINITE_SHARE * sizes[..., -1]).any():
         got = "one that is not, to rounding (of a singular posture?)"
         raise InvalidInput(expected("stiffness", "positive definite matrices", got))
     root = np.linalg.cholesky(matrix)

@@ -419,3 +419,17 @@ def test_of_designs_with_drives_nothing_is_advised_that_is_refused(gsp):
     assert "SD" not in shown.out
     assert "--indices" not in shown.out
     assert "SD" not in gsp("show", "lane-rotary").out
+
+
+def test_tables_in_latex_have_symbols_and_units(gsp, tmp_path):
+    assert gsp("jacobian", "lane-rotary", "--out", "j.tex").status == 0
+    lines = (tmp_path / "j.tex").read_text().splitlines()
+    twist = r"$v_x$ & $v_y$ & $v_z$ & $\omega_x$ & $\omega_y$ & $\omega_z$ \\"
+    assert lines[2] == f"joint & leg & constraint & value & unit & {twist}"
+    assert lines[4].startswith(r"$\theta_{1}$ & 1 & $D_1$ & ")
+    design = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
+    assert gsp("inverse", design, "--out", "i.tex").status == 0
+    heads = (tmp_path / "i.tex").read_text().splitlines()[2].removesuffix(r" \\").split(" & ")
+    assert heads[:4] == ["$x$ [mm]", "$y$ [mm]", "$z$ [mm]", r"angle 1 [$^\circ$]"]
+    assert heads[6] == "$d_{1}$ [mm]"
+    assert heads[-1] == r"$\theta_{5}$ [rad]"

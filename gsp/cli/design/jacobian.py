@@ -19,6 +19,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
+from gsp.cli.outputs.headings import motion_headings
 from gsp.cli.outputs.indices import indices_table, print_indices
 from gsp.cli.outputs.postures import strokes, warn_of
 from gsp.errors import InvalidInput
@@ -93,7 +94,8 @@ def jacobian(
     say("")
     print_indices(posture, *found_indices)
     if out is not None:
-        write_table(table, out, _metadata(posture, length), overwrite=force)
+        facts, headings = _metadata(posture, length), motion_headings(found)
+        write_table(table, out, facts, headings=headings, overwrite=force)
         say(f"Table      {out}")
 
 

@@ -23,6 +23,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import counted, say, warn
+from gsp.cli.outputs.headings import motion_headings
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.poses import pose_columns, print_rows
 from gsp.errors import InvalidInput, brief, expected
@@ -242,7 +243,8 @@ def _write(
     table: pd.DataFrame, out: Path | None, design: Design, order: str, *, force: bool
 ) -> None:
     if out is not None:
-        write_table(table, out, _metadata(design, order), overwrite=force)
+        facts, headings = _metadata(design, order), motion_headings(design)
+        write_table(table, out, facts, headings=headings, overwrite=force)
         say(f"Table      {out}")
 
 

@@ -1,4 +1,4 @@
-"""Headings of tables in LaTeX: the symbols of indices, with their statistics and units."""
+"""Headings of tables in LaTeX: symbols of indices, joints, poses and twists, with units."""
 
 from __future__ import annotations
 
@@ -6,16 +6,21 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from gsp.files.tables import escaped
+from gsp.files.tables import escaped, joint_symbol
+from gsp.geometry.frames.changes import TWIST_NAMES
+from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.indices import INDICES
 from gsp.ranking import STATISTICS
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from gsp.model.design import Design
+
 GREEK = {"λ": r"\lambda", "σ": r"\sigma", "φ": r"\varphi"}
 WORDS = {"q05": r"5\,\%", "q95": r"95\,\%"}
 _POWER = re.compile(r"(.+)\^\(?(-?\d+)\)?")
+TWIST_SYMBOLS = {name: name.replace("omega", r"\omega").join("$$") for name in TWIST_NAMES}
 
 
 def latex_headings(table: pd.DataFrame) -> dict[str, str]:
@@ -38,6 +43,17 @@ def latex_headings(table: pd.DataFrame) -> dict[str, str]:
             words = f" {WORDS.get(statistic, statistic)}" if statistic else ""
             found[column] = latex_symbol(INDICES[name].symbol) + words + _unit(known.get(name, ""))
     return found
+
+
+def motion_headings(design: Design) -> dict[str, str]:
+    """Return the headings of columns of poses, joints and twists of a design, as LaTeX."""
+    places = {name: f"${name}$" + _unit(design.unit) for name in POSE_COLUMNS[:3]}
+    angles = {name: name.replace("_", " ") + r" [$^\circ$]" for name in POSE_COLUMNS[3:]}
+    joints = {
+        name: joint_symbol(name) + _unit(unit)
+        for name, unit in zip(design.joint_names, design.joint_units, strict=True)
+    }
+    return places | angles | joints | TWIST_SYMBOLS
 
 
 def latex_symbol(symbol: str) -> str:
