@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.bridges import Solids
+from gsp.bridges import Solids, to_mjcf
 from gsp.bridges.linkage import linkage
 from gsp.bridges.mujoco.camera import FILLED, fit
+from gsp.bridges.mujoco.scene import Scene
 from gsp.bridges.proof import BOX, random_design
 
-pytest.importorskip("mujoco")
-from gsp.bridges.mujoco.scene import Scene
+
+mujoco = pytest.importorskip("mujoco")
 
 LIFT = gsp.hexapod(2.0, np.deg2rad(20.0), 1.0, np.deg2rad(30.0), 1.5, unit="m")
 CLASSES = ("D1^6", "D1 D2 D3 D4 A1^2", "D4^3 A1^3", "D2^3 D3^3")
@@ -120,3 +121,21 @@ def test_balls_are_seen_with_their_radii():
     half = np.arctan(FILLED * np.tan(np.deg2rad(30.0)))
     assert view.distance == pytest.approx(1.0 / np.sin(half), rel=1e-12)
     np.testing.assert_allclose(view.lookat, 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["apo-secondary", "rubin-camera-hexapod", "lee-2000-3-3"])
+def test_the_camera_of_a_model_sees_all_anchors_wherever_the_origins_are(name):
+    """By projection: in a picture of 4 to 3, and with the field of view of MuJoCo, 45 degrees."""
+    design = gsp.catalogue.design(name).with_origin([300.0, -200.0, 500.0])
+    model = mujoco.MjModel.from_xml_string(to_mjcf(design, design.home, Solids(metres=1.0)))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    ends = design.home.position + design.platform_points @ design.home.rotation.T
+    anchors = np.concatenate((design.base_points, ends))
+    camera = data.camera("side")
+    seen = (anchors - camera.xpos) @ camera.xmat.reshape(3, 3)
+    across = np.abs(seen[:, :2] / -seen[:, 2:]) / np.tan(np.deg2rad(45.0 / 2)) / [4 / 3, 1.0]
+    assert (seen[:, 2] < 0.0).all()
+    assert 0.3 < across.max() < 1.0
+    middle = 0.5 * (anchors.min(axis=0) + anchors.max(axis=0))
+    np.testing.assert_allclose(model.stat.center, middle, rtol=1e-9, atol=1e-9 * model.stat.extent)

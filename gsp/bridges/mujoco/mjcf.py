@@ -12,7 +12,7 @@ from gsp import arguments
 from gsp.bridges.drives import Drives, JointLimit, joint_limits
 from gsp.bridges.linkage import linkage
 from gsp.bridges.markup import Node, joined
-from gsp.bridges.motions import Chain, Motion, displacements
+from gsp.bridges.motions import Chain, Motion, Z, displacements
 from gsp.bridges.mujoco.elements import (
     LARGEST_PICTURE,
     add_body,
@@ -27,7 +27,8 @@ from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, cross, norm
+from gsp.geometry.vectors import unit as unit_vector
 from gsp.model.design import Design
 from gsp.statics.weights import GRAVITY
 
@@ -125,7 +126,7 @@ def to_mjcf(
     root = ElementTree.Element("mujoco", model=design.name or design.mechanism.name)
     _settings(root, down, mass, inertia)
     world = ElementTree.SubElement(root, "worldbody")
-    _scenery(world, design, pose, unit)
+    _scenery(root, world, design, pose, unit)
     add_geoms(world, bodies["base"], "base", unit)
     for chain in chains:
         _add_leg(world, chain, bodies, unit)
@@ -187,25 +188,20 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
         add(kind, "joint", damping=repr(DAMPING_RATE * size), armature=repr(ARMATURE_SHARE * size))
 
 
-def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
-    middle, size = pose.position * unit / 2.0, max(design.rms_radius * unit, 1e-9)
-    reach = 4.0 * max(size, float(np.abs(middle).max()))
+def _scenery(root: Node, world: Node, design: Design, pose: Pose, unit: float) -> None:
+    """Light, a camera "side" and the view of viewers, all of the box of the anchors."""
+    ends = pose.position + design.platform_points @ pose.rotation.T
+    anchors = unit * np.concatenate((design.base_points, ends))
+    low, high = anchors.min(axis=0), anchors.max(axis=0)
+    middle, reach = 0.5 * (low + high), max(float(norm(high - low)), 1e-9)
     add = ElementTree.SubElement
-    add(
-        world,
-        "light",
-        pos=joined(middle + np.array([0.0, 0.0, reach])),
-        dir="0 0 -1",
-        castshadow="false",
-    )
-    add(
-        world,
-        "camera",
-        name="side",
-        mode="targetbody",
-        target="platform",
-        pos=joined(middle + reach * np.array([0.7, -0.8, 0.35])),
-    )
+    add(root, "statistic", center=joined(middle), extent=repr(reach))
+    above = joined(middle + np.array([0.0, 0.0, 2.0 * reach]))
+    add(world, "light", pos=above, dir="0 0 -1", castshadow="false")
+    aside = np.array([0.7, -0.8, 0.35])
+    right = unit_vector(cross(Z, aside))
+    axes = joined([*right, *unit_vector(cross(aside, right))])
+    add(world, "camera", name="side", pos=joined(middle + 1.3 * reach * aside), xyaxes=axes)
 
 
 def _add_leg(
