@@ -10,7 +10,6 @@ from gsp.bridges.mujoco.camera import FILLED, fit
 from gsp.bridges.mujoco.scene import Scene
 from gsp.bridges.proof import BOX, random_design
 
-
 mujoco = pytest.importorskip("mujoco")
 
 LIFT = gsp.hexapod(2.0, np.deg2rad(20.0), 1.0, np.deg2rad(30.0), 1.5, unit="m")
