@@ -92,6 +92,33 @@ DESIGNS = {
 }
 
 
+def mixture(seed):
+    """Sliders, cranks and other legs with six constraints together, dimensions at random."""
+    rng = np.random.default_rng(seed)
+    kinds, others = ["slider", "crank"], ["slider", "crank", "D1", "D2", "D3", "D4", "A1", "D4 A1"]
+    while (count := sum(len(kind.split()) for kind in kinds)) < 6:
+        fitting = [kind for kind in others if count + len(kind.split()) <= 6]
+        kinds.append(str(rng.choice(fitting)))
+    base, platform = rng.uniform(-1.0, 1.0, (2, len(kinds), 3))
+    lines = rng.normal(size=(2, len(kinds), 3))
+    box = gsp.PoseBox([(-0.5, 0.5), (-0.5, 0.5), (1.0, 2.0)], [(-0.6, 0.6)] * 3)
+    home = box.sample(1, rng=rng)[0]
+    legs = list(kinds)
+    for i, kind in enumerate(kinds):
+        d = home.position + home.rotation @ platform[i] - base[i]
+        branch = int(rng.choice([-1, 1]))
+        s = lines[0, i] / np.linalg.norm(lines[0, i])
+        if kind == "slider":
+            rod = rng.uniform(1.05, 2.0) * np.linalg.norm(np.cross(d, s))
+            legs[i] = Slider(rod=rod, branch=branch)
+        elif kind == "crank":  # in reach at some angle
+            arm, q = 0.4 * rng.normal(size=3), rng.uniform(-3.0, 3.0)
+            turned = arm * np.cos(q) + np.cross(s, arm) * np.sin(q)
+            rod = np.linalg.norm(d - turned - s * (s @ arm) * (1.0 - np.cos(q)))
+            legs[i] = Crank(arm=arm, rod=rod, branch=branch)
+    return Design(legs, base, platform, *lines, home=home, unit="m")
+
+
 def near_home(design, count, seed=0):
     """Poses near home where all legs are defined."""
     size = design.rms_radius

@@ -26,7 +26,7 @@ from gsp.bridges.mujoco.scene import Scene
 from gsp.bridges.proof import DIFFERENCE_TOLERANCE
 from gsp.errors import InvalidInput, UndefinedPosture
 from gsp.model.units import METRES_PER_UNIT
-from tests import driven
+from tests import campaign, driven
 from tests.bridges.test_dynamics import (
     closed_acceleration,
     held,
@@ -64,6 +64,22 @@ def test_rates_of_actuators_and_passive_joints_agree(name, program):
     design = DESIGNS[name]
     for pose in driven.near_home(design, 2, seed=3):
         assert max(agreement(design, pose, program)) < DIFFERENCE_TOLERANCE
+
+
+@pytest.mark.parametrize("seed", range(campaign.count(6, 200)))
+def test_mixtures_of_all_legs_agree_with_both_programs(seed):
+    """Of dimensions at random; far enough from singular ones to have digits left."""
+    design = driven.mixture(seed)
+    posture = design.at(design.home)
+    condition = np.linalg.cond(posture.homogeneous(design.rms_radius))
+    if condition > 1e3 or np.abs(posture.drive_scales).min() < 1e-2:
+        return
+    for program in ("pinocchio", "mujoco"):
+        assert max(agreement(design, design.home, program)) < DIFFERENCE_TOLERANCE
+    solids = Solids(platform_mass=9.0)
+    forces = gsp.statics.holding_forces(design, design.home, masses(design, design.home, solids))
+    for found in (held_by_mujoco(design, solids), held_by_pinocchio(design, solids)):
+        np.testing.assert_allclose(found, forces, atol=1e-10 * np.abs(forces).max())
 
 
 @pytest.mark.parametrize("program", ["pinocchio", "mujoco"])
@@ -128,7 +144,7 @@ def test_models_start_assembled_and_stay_so_under_gravity(name):
 
 def test_loops_of_urdf_are_closed_where_all_joints_are_zero():
     for design in frames(FIVE):
-        for floating in (True, False):
+        for floating in (True, False) if design is FIVE else (True,):
             tree = to_urdf(design, design.home, floating=floating)
             model, loops, q = urdf_machine(tree)
             data = model.createData()
@@ -147,7 +163,7 @@ def test_loops_of_urdf_are_closed_where_all_joints_are_zero():
 
 def test_drives_move_the_platform_to_the_pose_of_forward():
     joints = FIVE.at(FIVE.home.moved([0.03, -0.02, 0.04, 0.03, 0.02, -0.04])).joints
-    end = simulate(FIVE, FIVE.home, joints, duration=2.0, gravity=[0, 0, 0])
+    end = simulate(FIVE, FIVE.home, joints, duration=1.0, gravity=[0, 0, 0])
     found = gsp.forward(FIVE, joints, FIVE.home)
     assert found.converged
     np.testing.assert_allclose(end.joints, joints, atol=1e-6)
