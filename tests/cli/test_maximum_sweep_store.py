@@ -263,3 +263,9 @@ def test_a_plausible_value_that_its_pose_contradicts_is_listed_as_damaged(gsp, s
     assert ("valid" in listing, "damaged" in listing) == (True, False)
     known = maximum(lee.octahedral_3_3(1.0, 1.0))
     assert (known.method, known.value) == ("store", found.value)
+
+
+def test_a_sweep_of_drives_needs_indices(gsp):
+    result = gsp("sweep", "lane-rotary", "--rotate", "z")
+    assert result.status == 1
+    assert "--indices: expected indices, such as CTN with --length" in result.error

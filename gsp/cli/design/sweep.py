@@ -39,7 +39,7 @@ from gsp.cli.outputs.pictures import (
     save_picture,
 )
 from gsp.determinant import maximum
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.evaluation.request import names_for
 from gsp.files.cells import number_of
 from gsp.files.tables import check_table, write_table
@@ -178,6 +178,9 @@ def sweep_command(
     _check_steps(steps, over)
     check_length(length)
     found = find_design(design)
+    if found.driven and not indices:
+        wanted = "indices, such as CTN with --length, as λ has no maximum with drives at the base"
+        raise MissingParameter(expected("--indices", wanted, "none"))
     names = names_for(indices, [found]) if indices else ("quality_index",)
     refuse_parameters(context, names, [found])
     start = _start(found, position, angles, order)
