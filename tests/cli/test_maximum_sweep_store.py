@@ -267,5 +267,5 @@ def test_a_plausible_value_that_its_pose_contradicts_is_listed_as_damaged(gsp, s
 
 def test_a_sweep_of_drives_needs_indices(gsp):
     result = gsp("sweep", "lane-rotary", "--rotate", "z")
-    assert result.status == 1
+    assert result.status == 2
     assert "--indices: expected indices, such as CTN with --length" in result.error
