@@ -5,8 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import re
-from collections.abc import Iterable
-from itertools import islice
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 
@@ -198,7 +197,7 @@ def brief(value: object) -> str:
     Dates, as TOML has them, are called so: "a date", "a time", "a datetime".
     """
     try:
-        text = _DATE.sub(r"a \1", " ".join(repr(_first(value)).split()))
+        text = _DATE.sub(r"a \1", " ".join(repr(_first(value, [ITEMS_SHOWN])).split()))
     except RecursionError:
         text = f"a deeply nested {type(value).__name__}"
     except ValueError:  # Python writes no integers of thousands of digits
@@ -208,23 +207,34 @@ def brief(value: object) -> str:
     return cut(text)
 
 
-# Levels of collections of which the first items alone are written, so that great ones take no time.
-LEVELS_CUT = 4
+# Items of a collection, and of those in it, that a message can hold: each has a separator.
+ITEMS_SHOWN = LETTERS_PER_VALUE // 2
 
 
-def _first(value: Any, levels: int = LEVELS_CUT) -> Any:
+def _first(value: Any, left: list[int]) -> Any:
     """Return a collection with as many of its items, and of theirs, as a message can hold.
 
-    Of a text as many characters as it can hold if each is escaped.
+    Of a text as many characters as it can hold if each is escaped. `left` has the number of items
+    that may follow, so that great collections, and those that repeat others, take no time.
     """
-    kind, most = type(value), LETTERS_PER_VALUE // 2
+    kind = type(value)
     if kind in (str, bytes, bytearray):
         return value[: LETTERS_PER_TEXT * LETTERS_PER_VALUE]
-    if not levels or kind not in (list, tuple, dict, set, frozenset):
-        return value
     if kind is dict:
-        return {key: _first(one, levels - 1) for key, one in islice(value.items(), most)}
-    return kind(_first(x, levels - 1) for x in islice(value, most))
+        pairs = _few(value.items(), left)
+        return {_first(key, left): _first(one, left) for key, one in pairs}
+    if kind in (list, tuple, set, frozenset):
+        return kind(_first(x, left) for x in _few(value, left))
+    return value
+
+
+def _few(items: Iterable[Any], left: list[int]) -> Iterator[Any]:
+    for number, item in enumerate(items):
+        if number:
+            if not left[0]:
+                return
+            left[0] -= 1
+        yield item
 
 
 def cut(text: str, most: int = LETTERS_PER_VALUE) -> str:

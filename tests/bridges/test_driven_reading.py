@@ -144,7 +144,7 @@ def test_joints_that_are_no_drive_and_rod_are_refused(tmp_path):
     design = driven.rotary()
     text = foreign_mjcf(design)
     motors = text.replace('<motor joint="motor0"/>', "")
-    with pytest.raises(MalformedFile, match=r"leg 1 .*an actuator of 'motor0'"):
+    with pytest.raises(MalformedFile, match=r"leg 1 .*an actuator of the turn 'motor0'"):
         read_text(tmp_path, motors)
     # The second turn of a universal joint is parallel to the first: the rod only turns in a plane.
     first = text.index('<joint type="hinge" axis="') + len('<joint type="hinge" axis="')

@@ -120,7 +120,8 @@ def test_the_arm_of_a_slider_is_refused(gsp, axis):
 
 
 def test_other_files_are_refused(gsp):
-    assert "a table ending in .csv" in gsp("import", "a.txt").error
+    error = gsp("import", "lift.toml").error
+    assert "expected a table (.csv, .parquet, .xlsx), or a model or package (.xml, " in error
     assert "a.csv" in gsp("import", "a.csv").error
     Path("a.xlsx").write_text("no table")
     assert "a.xlsx: expected a table" in gsp("import", "a.xlsx").error
@@ -160,17 +161,17 @@ def test_a_new_hexapod_from_questions(gsp, monkeypatch):
     assert next(answers, None) is None
 
 
-def test_a_number_is_no_unit(gsp, monkeypatch):
+def test_what_names_no_unit_is_refused(gsp, monkeypatch):
     """Users answer the first question, that of the unit, with the radius."""
     assert "--unit: expected the name of a unit" in gsp("new", *NUMBERS, "--unit", "2").error
-    answers = iter("2 2,5 1e3 mm 2 20 1 30 1.5 n".split())
+    answers = iter("2 2,5 1e3 20° x mm 2 20 1 30 1.5 n".split())
     monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
     monkeypatch.setattr("typer.prompt", lambda text, **_: next(answers))
     monkeypatch.setattr("typer.confirm", lambda text, **_: next(answers) == "y")
     result = gsp("new")
     assert read_design("hexapod.toml").unit == "mm"
-    wanted = "gsp: answer: expected the name of a unit of length, such as mm, and no number"
-    said = [f"{wanted}, received {number!r}" for number in ("2", "2,5", "1e3")]
+    wanted = "gsp: answer: expected the name of a unit of length: um, µm, μm, mm, cm, dm, m, in, "
+    said = [f"{wanted}inch, ft, received {text!r}" for text in ("2", "2,5", "1e3", "20°", "x")]
     assert result.err.splitlines() == said
 
 

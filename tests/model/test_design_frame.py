@@ -98,3 +98,19 @@ def test_errors_name_column_and_row(case):
 def test_unknown_columns_name_the_nearest():
     with pytest.raises(UnknownName, match="nearest: base_x"):
         gsp.Design.from_frame(HEXAPOD.to_frame().assign(base_xx=1.0))
+
+
+@pytest.mark.parametrize(
+    ("column", "message"),
+    [
+        ("stroke_low_2", "column 'stroke_low_2': expected nothing, as a leg D1 has one actuated"),
+        ("stroke_high_2", "column 'stroke_high_2': expected nothing"),
+        ("base_dx", "column 'base_dy': expected a number, as base_dx has one"),
+        ("platform_dz", "column 'platform_dx': expected a number, as platform_dz has one"),
+    ],
+)
+def test_numbers_that_a_leg_does_not_use_are_refused(column, message):
+    with pytest.raises(InvalidInput, match=message):
+        gsp.Design.from_frame(HEXAPOD.to_frame().assign(**{column: 1.0}))
+    empty = HEXAPOD.to_frame().assign(**{column: np.nan})
+    equal(gsp.Design.from_frame(empty), HEXAPOD)

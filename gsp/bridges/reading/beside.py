@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,8 +11,7 @@ from gsp.bridges.reading.keys import Keys, read_keys
 from gsp.bridges.reading.linkages import Freedom, Link
 from gsp.geometry.pose import Pose
 
-# Names of passive joints in exported models: "leg4_slide", "leg1_base_turn" …
-PASSIVE = re.compile(r"leg\d+_(base_|platform_)?(slide|turn)|.*passive.*", re.IGNORECASE)
+KEYS = ("loops", "joints_at_zero", "slides_at_zero")
 
 
 class Closing(NamedTuple):
@@ -41,12 +39,7 @@ class Beside:
 
     def _known(self, freedom: Freedom) -> Freedom:
         name = freedom.name
-        if self.active:
-            active: bool | None = name in self.active
-        else:
-            active = freedom.active
-            if active is None:
-                active = PASSIVE.fullmatch(name) is None
+        active = name in self.active if self.active else freedom.active
         value = self.passive.get(name, self.active.get(name, freedom.value))
         return replace(freedom, active=active, value=value)
 
@@ -62,11 +55,13 @@ def read_beside(path: Path) -> Beside:
     if not path.is_file():
         return Beside(path=path)
     keys = read_keys(path)
+    if not any(key in keys for key in KEYS):
+        keys.fail("a mapping with " + ", ".join(KEYS) + " or some of them")
     numbers = [
         {name: keys[key][name].number() for name in keys[key].names()} if key in keys else {}
-        for key in ("joints_at_zero", "slides_at_zero")
+        for key in KEYS[1:]
     ]
-    closings = tuple(map(_closing, keys["loops"].items())) if "loops" in keys else ()
+    closings = tuple(map(_closing, keys["loops"].items(1))) if "loops" in keys else ()
     return Beside(
         path=path,
         loops=closings,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.bridges.reading.chains import find_platform, paths
+from gsp.bridges.reading.chains import Chains, chains_of
 from gsp.bridges.reading.driven import in_axes
 from gsp.bridges.reading.ends import FoundLeg, anchors_on_platform
 from gsp.bridges.reading.legs import leg_of
 from gsp.bridges.reading.linkages import Linkage
+from gsp.bridges.reading.mobility import rank
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import norm
@@ -17,7 +18,7 @@ from gsp.model.design import Design
 FREEDOMS = 6
 
 
-def design_of(linkage: Linkage, name: str | None = None) -> Design:
+def design_of(linkage: Linkage, name: str | None = None, *, chosen: bool = False) -> Design:
     """Return the design of a linkage, in metres, with the pose of the file as its home pose.
 
     Parameters
@@ -25,6 +26,8 @@ def design_of(linkage: Linkage, name: str | None = None) -> Design:
     linkage : Linkage
     name : str or None
         Of the design; default that of the model.
+    chosen : bool
+        Whether the user has named base or platform: see `chains_of`.
 
     Returns
     -------
@@ -33,13 +36,19 @@ def design_of(linkage: Linkage, name: str | None = None) -> Design:
     Raises
     ------
     InvalidInput, UnknownName
-        If there is no platform, or a chain is not a leg of the catalogue.
+        If there is no platform, a chain is not a leg of the catalogue, or something else holds
+        the platform: joints with the base, or joints that are coupled.
     """
-    platform = find_platform(linkage)
-    chains = paths(linkage, platform)
+    found = chains_of(linkage, chosen=chosen)
+    platform, chains = found.platform, found.legs
+    if not chains:
+        wanted = f"legs between base and {brief(platform)}"
+        raise InvalidInput(expected("model", wanted, "none"))
     base, place = linkage.places[linkage.base], linkage.places[platform]
     points = np.array([x.point for chain in chains for x in chain.freedoms])
     size = float(norm(points - points.mean(axis=0)).max())
+    _check_guides(found, size)
+    _check_couplings(linkage, found)
     legs = [leg_of(chain, i + 1, size) for i, chain in enumerate(chains)]
     count = sum(len(leg.constraints.split()) for leg in legs)
     if count < FREEDOMS:
@@ -61,6 +70,28 @@ def design_of(linkage: Linkage, name: str | None = None) -> Design:
         unit="m",
         name=linkage.name if name is None else name,
     )
+
+
+def _check_guides(chains: Chains, size: float) -> None:
+    """Refuse joints between base and platform, but those that leave all motions free."""
+    for link in chains.guides:
+        driven = [x.name for x in link.freedoms if x.active]
+        free = rank(link.freedoms, size)
+        if free < FREEDOMS or driven:
+            kinds = ", ".join(f"{x.kind} {brief(x.name)}" for x in link.freedoms)
+            got = f"a joint of {free} freedoms ({kinds})" + (", which is driven" if driven else "")
+            wanted = f"nothing but the legs that holds the platform {brief(chains.platform)}"
+            raise InvalidInput(expected(link.where or brief(link.name), wanted, got))
+
+
+def _check_couplings(linkage: Linkage, chains: Chains) -> None:
+    """Refuse what couples or holds joints of the mechanism."""
+    moved = {x.name for leg in chains.legs for x in leg.freedoms}
+    moved |= {x.name for link in chains.guides for x in link.freedoms}
+    for coupling in linkage.couplings:
+        if moved.intersection(coupling.joints):
+            wanted = "joints of the legs that move each on its own"
+            raise InvalidInput(expected(coupling.where, wanted, coupling.got))
 
 
 def _strokes(legs: list[FoundLeg]) -> list[tuple[float, float]] | None:

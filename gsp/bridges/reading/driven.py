@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gsp.bridges.reading.ends import NONE, TOLERANCE, End, FoundLeg, check_that, joint_at_end
+from gsp.bridges.reading.actuated import check_driven
+from gsp.bridges.reading.ends import NONE, TOLERANCE, End, FoundLeg, joint_at_end
 from gsp.bridges.reading.linkages import Freedom
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
@@ -61,14 +62,14 @@ def driven_leg(freedoms: Sequence[Freedom], where: str, size: float) -> FoundLeg
         got = ", ".join(f"{x.kind} {brief(x.name)}" for x in reversed(rest))
         wanted = "two spherical joints behind the first joint"
         raise InvalidInput(expected(where, wanted, f"besides them {got}"))
-    if first.active is False:
-        wanted = f"an actuator of {brief(first.name)}, with which the leg begins"
-        raise InvalidInput(expected(where, wanted, "none"))
+    check_driven(freedoms, first, where)
     value = _counted(first)
     rod = top.point - tip.point
     if first.kind == "turn":
         off_axis = float(norm(cross(first.axis, tip.point - first.point)))
-        check_that(off_axis > TOLERANCE * size, where, "a tip beside the axis of the first joint")
+        if off_axis <= TOLERANCE * size:
+            wanted = "a tip beside the axis of the first joint"
+            raise InvalidInput(expected(where, wanted, f"one that is {off_axis:.3g} m from it"))
     make = _slider if first.kind == "slide" else _crank
     point, slope, drive = make(first, value, tip.point, float(norm(rod)))
     if rod @ slope < 0.0:

@@ -13,9 +13,9 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.model.drives import Drive
 
-# Largest distance of what should meet, as a share of the size of the leg, and largest sine or
+# Largest distance of what should meet, as a share of the size of the mechanism, and largest sine or
 # cosine of what should be parallel or perpendicular: files often have six digits.
-TOLERANCE = 1e-4
+TOLERANCE = 1e-5
 NONE = np.full(3, np.nan)
 MANY_TURNS = 3
 
@@ -71,11 +71,17 @@ def joint_at_end(
     count = 0
     while count < min(MANY_TURNS, len(freedoms)) and freedoms[count].kind == "turn":
         count += 1
+    missed = None
     for turns in range(count, 1, -1):
         point = _meeting(freedoms[:turns])
-        if point is not None and _through(point, freedoms[:turns]) <= TOLERANCE * size:
+        if point is None:
+            continue
+        missed = _through(point, freedoms[:turns])
+        if missed <= TOLERANCE * size:
             return End(point, NONE), tuple(freedoms[turns:])
     got = ", ".join(f"{x.kind} {brief(x.name)}" for x in freedoms[:MANY_TURNS]) or "nothing"
+    if missed is not None:
+        got += f", of which the axes miss each other by {_beyond(missed)}"
     wanted = f"at the {side} a ball, turns whose axes meet, or a slide and a turn along one line"
     raise InvalidInput(expected(where, wanted, got))
 
@@ -112,20 +118,30 @@ def _through(point: Array, turns: Sequence[Freedom]) -> float:
     return max(float(norm(cross(point - x.point, x.axis))) for x in turns)
 
 
+def sine(one: Array, other: Array) -> float:
+    """Return the sine of the angle between two unit vectors, in [0, 1]."""
+    return float(norm(cross(one, other)))
+
+
 def parallel(one: Array, other: Array) -> bool:
     """Return whether two unit vectors are parallel up to the tolerance."""
-    return float(norm(cross(one, other))) <= TOLERANCE
+    return sine(one, other) <= TOLERANCE
 
 
-def perpendicular(one: Array, other: Array) -> bool:
-    """Return whether two unit vectors are perpendicular up to the tolerance."""
-    return abs(float(one @ other)) <= TOLERANCE
+def check_small(value: float, where: str, wanted: str, what: str) -> None:
+    """Raise InvalidInput with what was wanted of a leg, if a sine or cosine is not small."""
+    if abs(value) > TOLERANCE:
+        raise InvalidInput(expected(where, wanted, f"a {what} of {value:.2g} between them"))
 
 
-def check_that(holds: bool, where: str, wanted: str) -> None:
-    """Raise InvalidInput with what was wanted of a leg, unless it holds."""
-    if not holds:
-        raise InvalidInput(expected(where, wanted, "another direction or place"))
+def check_near(distance: float, size: float, where: str, wanted: str) -> None:
+    """Raise InvalidInput with what was wanted of a leg, if a distance is more than rounding."""
+    if distance > TOLERANCE * size:
+        raise InvalidInput(expected(where, wanted, f"one that misses by {_beyond(distance)}"))
+
+
+def _beyond(distance: float) -> str:
+    return f"{distance:.3g} m, which is more than {TOLERANCE:g} of the size"
 
 
 def anchors_on_platform(end: End, shift: Pose, platform: Pose) -> End:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from gsp.bridges.reading.actuated import check_driven, driven_of_two
 from gsp.bridges.reading.chains import Path
 from gsp.bridges.reading.driven import driven_leg, is_driven
-from gsp.bridges.reading.ends import (
-    TOLERANCE,
-    End,
-    FoundLeg,
-    check_that,
-    joint_at_end,
-    parallel,
-    perpendicular,
-)
+from gsp.bridges.reading.ends import End, FoundLeg, check_near, check_small, joint_at_end, sine
 from gsp.bridges.reading.linkages import Freedom
+from gsp.bridges.reading.mobility import rank
 from gsp.errors import LETTERS_PER_TEXT, InvalidInput, brief, cut, expected
 from gsp.geometry.vectors import Array, cross, norm
 
@@ -43,15 +39,16 @@ def leg_of(path: Path, number: int, size: float) -> FoundLeg:
     InvalidInput
         If the joints are not those of an SPS, SPC, CPS or CCC leg, or of a PSS or RSS leg that is
         driven at the base. Two or three turns whose axes meet count as S, a slide and a turn along
-        one line as C.
+        one line as C. If the leg alone holds the platform, or other joints are driven than those
+        of the leg.
     """
     where = f"leg {number} (joints {cut(path.names, LETTERS_PER_TEXT)})"
     count = sum(3 if x.kind == "ball" else 1 for x in path.freedoms)
-    if count < LEAST_FREEDOMS:
-        wanted = f"at least {LEAST_FREEDOMS} freedoms, with which a leg alone holds nothing"
-        raise InvalidInput(expected(where, wanted, f"{count}"))
+    _check_count(count, count, where)
     if is_driven(path.freedoms):
-        return driven_leg(path.freedoms, where, size)
+        leg = driven_leg(path.freedoms, where, size)
+        _check_count(rank(path.freedoms, size), count, where)
+        return leg
     base, rest = joint_at_end(path.freedoms, where, size, "base")
     platform, rest = joint_at_end(tuple(reversed(rest)), where, size, "platform")
     middle = tuple(reversed(rest))
@@ -60,36 +57,48 @@ def leg_of(path: Path, number: int, size: float) -> FoundLeg:
         got = ", ".join(f"{x.kind} {brief(x.name)}" for x in middle) or "none"
         wanted = "one slide, or a slide and a turn along one axis, between the joints at its ends"
         raise InvalidInput(expected(where, wanted, got))
+    _check_count(rank(path.freedoms, size), count, where)
     slide = next(x for x in middle if x.kind == "slide")
     turn = next((x for x in middle if x.kind == "turn"), None)
     if turn is not None:
-        check_that(parallel(slide.axis, turn.axis), where, "a slide and a turn along one axis")
+        check_small(sine(slide.axis, turn.axis), where, "a slide and a turn along one axis", "sine")
     lines = not np.isnan(base.line).any(), not np.isnan(platform.line).any()
     u, length = _segment(base, platform, slide, where, size)
     if all(lines):
         if turn is None:
             raise InvalidInput(expected(where, "a turn beside the slide between two lines", "none"))
-        return _between_lines(base, platform, slide, turn, u, length, where)
+        driven = driven_of_two(path.freedoms, slide, turn, where)
+        return _between_lines(base, platform, slide, turn, u, length, driven)
+    check_driven(path.freedoms, slide, where)
     names = {(False, False): "D1", (False, True): "D2", (True, False): "D3"}
     stroke = _stroke(slide, length, float(slide.axis @ u))
     return FoundLeg(names[lines], base, platform, [stroke])
 
 
+def _check_count(independent: int, count: int, where: str) -> None:
+    if independent < LEAST_FREEDOMS:
+        wanted = f"at least {LEAST_FREEDOMS} freedoms, with which a leg alone holds nothing"
+        got = f"{count}" if independent == count else f"{count}, of them {independent} independent"
+        raise InvalidInput(expected(where, wanted, got))
+
+
 def _between_lines(
-    base: End, platform: End, slide: Freedom, turn: Freedom, u: Array, length: float, where: str
+    base: End,
+    platform: End,
+    slide: Freedom,
+    turn: Freedom,
+    u: Array,
+    length: float,
+    driven: Sequence[Freedom],
 ) -> FoundLeg:
     normal = cross(base.line, platform.line)
     angle = float(np.arctan2(norm(normal), base.line @ platform.line))
     strokes = {
-        "D4": _stroke(slide, length, float(slide.axis @ u)),
-        "A1": _stroke(turn, angle, float(turn.axis @ normal)),
+        "D4": (slide, _stroke(slide, length, float(slide.axis @ u))),
+        "A1": (turn, _stroke(turn, angle, float(turn.axis @ normal))),
     }
-    active = {"D4": slide.active, "A1": turn.active}
-    names = [name for name, drives in active.items() if drives]
-    if not names:
-        wanted = "an actuator of the slide, of the turn, or of both"
-        raise InvalidInput(expected(where, wanted, "none"))
-    return FoundLeg(" ".join(names), base, platform, [strokes[name] for name in names])
+    found = {name: stroke for name, (freedom, stroke) in strokes.items() if freedom in driven}
+    return FoundLeg(" ".join(found), base, platform, list(found.values()))
 
 
 def _segment(
@@ -99,7 +108,7 @@ def _segment(
     d = platform.point - base.point
     for end in (base, platform):
         if not np.isnan(end.line).any():
-            check_that(perpendicular(slide.axis, end.line), where, "a slide across its lines")
+            check_small(float(slide.axis @ end.line), where, "a slide across its lines", "cosine")
     along = float(d @ slide.axis)
     u = slide.axis * (1.0 if along >= 0.0 else -1.0)
     aside = d - abs(along) * u
@@ -108,7 +117,7 @@ def _segment(
             aside = aside - (aside @ end.line) * end.line
     # Both anchors of lines may lie anywhere on them: what is left aside is neither.
     if np.isnan(base.line).any() or np.isnan(platform.line).any():
-        check_that(float(norm(aside)) <= TOLERANCE * size, where, "a slide from end to end")
+        check_near(float(norm(aside)), size, where, "a slide from end to end")
     return u, abs(along)
 
 

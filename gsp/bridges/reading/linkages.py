@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class Freedom:
     value : float [m, rad]
         What the joint variable counts in this configuration; NaN if it is not known.
     active : bool or None
-        Whether an actuator drives it; None if the file does not state it.
+        Whether an actuator drives it; None if the file states no actuators.
     """
 
     kind: Literal["ball", "slide", "turn"]
@@ -75,6 +75,24 @@ class Link:
     shift: Pose = NO_SHIFT
 
 
+class Coupling(NamedTuple):
+    """What lets joints move together only, or holds one.
+
+    Attributes
+    ----------
+    where : str
+        Place in the file, for errors.
+    joints : tuple of str
+        Names of the joints.
+    got : str
+        What it is, for errors.
+    """
+
+    where: str
+    joints: tuple[str, ...]
+    got: str
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Linkage:
     """The bodies and joints of a file.
@@ -90,6 +108,7 @@ class Linkage:
     places : mapping of name to Pose
         Of all bodies.
     links : sequence of Link
+    couplings : sequence of Coupling
     """
 
     name: str
@@ -97,3 +116,4 @@ class Linkage:
     platform: str = ""
     places: Mapping[str, Pose]
     links: Sequence[Link]
+    couplings: Sequence[Coupling] = ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +12,11 @@ import numpy as np
 from gsp.arguments import LARGEST_NUMBER
 from gsp.bridges.mujoco.simulation import load_mujoco
 from gsp.bridges.reading.linkages import Freedom, Link, Linkage
+from gsp.bridges.reading.mujoco_constraints import actuators, equalities, loops, name_of
 from gsp.bridges.reading.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
 
 if TYPE_CHECKING:
     import mujoco
@@ -56,21 +57,22 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
         raise MalformedFile(expected(f"{path}, root element", wanted, f"<{cut(root.tag)}>"))
     _check_numbers(path, set())
     try:
-        model = program.MjModel.from_xml_path(str(path))
+        with _silent(program):
+            model = program.MjModel.from_xml_path(str(path))
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())[:LONGEST_REASON]
         raise MalformedFile(expected(str(path), "a model that MuJoCo reads", reason)) from error
     data = program.MjData(model)
-    program.mj_kinematics(model, data)  # forces may not exist
-    names = [_name(program, model, "BODY", i) for i in range(model.nbody)]
+    program.mj_kinematics(model, data)  # places alone: masses do not matter
+    names = [name_of(program, model, "BODY", i) for i in range(model.nbody)]
     places = {
         name: Pose.from_quaternion(data.xpos[i], np.roll(data.xquat[i], -1))
         for i, name in enumerate(names)
     }
-    driven = _driven(program, model)
+    driven, couplings = actuators(program, model)
     links = [
         *_tree(program, model, data, names, driven),
-        *_loops(program, model, data, names),
+        *loops(program, model, data, names),
     ]
     title = bytes(model.names).split(b"\0")[0].decode()
     return Linkage(
@@ -79,7 +81,19 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
         platform=platform or _free_body(program, model, names),
         places=places,
         links=links,
+        couplings=[*couplings, *equalities(program, model)],
     )
+
+
+@contextmanager
+def _silent(program: Any) -> Iterator[None]:
+    """Leave out warnings about masses, which MuJoCo prints and writes to a file where it runs."""
+    before = program.get_mju_user_warning()
+    program.set_mju_user_warning(lambda _: None)
+    try:
+        yield
+    finally:
+        program.set_mju_user_warning(before)
 
 
 def _check_numbers(path: Path, seen: set[Path]) -> None:
@@ -108,12 +122,6 @@ def _check_attribute(file: XmlFile, node: Node, key: str, text: str) -> None:
         file.fail(node, key, "finite numbers", brief(text))
 
 
-def _name(program: Any, model: mujoco.MjModel, kind: str, number: int) -> str:
-    """Return the name of an object; its kind and number where it has none."""
-    found = program.mj_id2name(model, getattr(program.mjtObj, f"mjOBJ_{kind}"), number)
-    return found or f"{kind.lower()} {number}"
-
-
 def _free_body(program: Any, model: mujoco.MjModel, names: list[str]) -> str:
     """Return the body that floats, if one does: in models of closed chains the platform."""
     free = [
@@ -122,16 +130,6 @@ def _free_body(program: Any, model: mujoco.MjModel, names: list[str]) -> str:
         if model.jnt_type[j] == int(program.mjtJoint.mjJNT_FREE)
     ]
     return free[0] if len(free) == 1 else ""
-
-
-def _driven(program: Any, model: mujoco.MjModel) -> set[int]:
-    """Return the joints that have actuators."""
-    kinds = (int(program.mjtTrn.mjTRN_JOINT), int(program.mjtTrn.mjTRN_JOINTINPARENT))
-    return {
-        int(model.actuator_trnid[i, 0])
-        for i in range(model.nu)
-        if model.actuator_trntype[i] in kinds
-    }
 
 
 def _tree(
@@ -155,9 +153,10 @@ def _tree(
 def _freedom(
     program: Any, model: mujoco.MjModel, data: mujoco.MjData, j: int, driven: set[int]
 ) -> Freedom:
-    name, point = _name(program, model, "JOINT", j), np.array(data.xanchor[j])
+    name, point = name_of(program, model, "JOINT", j), np.array(data.xanchor[j])
+    active = j in driven if driven else None
     if model.jnt_type[j] == int(program.mjtJoint.mjJNT_BALL):
-        return Freedom(kind="ball", name=name, point=point)
+        return Freedom(kind="ball", name=name, point=point, active=active)
     value = float(model.qpos0[model.jnt_qposadr[j]])
     low, high = (model.jnt_range[j] - value) if model.jnt_limited[j] else (-np.inf, np.inf)
     return Freedom(
@@ -168,59 +167,5 @@ def _freedom(
         low=float(low),
         high=float(high),
         value=value,
-        active=j in driven if driven else None,
+        active=active,
     )
-
-
-def _loops(
-    program: Any, model: mujoco.MjModel, data: mujoco.MjData, names: list[str]
-) -> Iterator[Link]:
-    """Connect and weld constraints between bodies or sites."""
-    connect, weld = (int(getattr(program.mjtEq, f"mjEQ_{x}")) for x in ("CONNECT", "WELD"))
-    for i in range(model.neq):
-        if model.eq_type[i] not in (connect, weld):
-            continue
-        name = _name(program, model, "EQUALITY", i)
-        bodies, points = _ends(program, model, data, i)
-        ball = model.eq_type[i] == connect
-        freedoms = [Freedom(kind="ball", name=name, point=points[0])] if ball else []
-        shift = Pose(points[1] - points[0])
-        if not ball and model.eq_objtype[i] == int(program.mjtObj.mjOBJ_BODY):
-            shift = _weld_shift(model, data, i, bodies)
-        yield Link(
-            name=name,
-            parent=names[bodies[0]],
-            child=names[bodies[1]],
-            freedoms=freedoms,
-            shift=shift,
-        )
-
-
-def _ends(
-    program: Any, model: mujoco.MjModel, data: mujoco.MjData, i: int
-) -> tuple[list[int], list[Array]]:
-    """Return the bodies of a constraint, and where each has the point that they share."""
-    objects = [int(model.eq_obj1id[i]), int(model.eq_obj2id[i])]
-    if model.eq_objtype[i] == int(program.mjtObj.mjOBJ_SITE):
-        bodies = [int(model.site_bodyid[k]) for k in objects]
-        return bodies, [np.array(data.site_xpos[k]) for k in objects]
-    if model.eq_type[i] == int(program.mjtEq.mjEQ_CONNECT):
-        anchors = model.eq_data[i, :3], model.eq_data[i, 3:6]
-    else:
-        anchors = model.eq_data[i, 3:6], model.eq_data[i, :3]
-    points = [
-        data.xpos[k] + data.xmat[k].reshape(3, 3) @ anchor
-        for k, anchor in zip(objects, anchors, strict=True)
-    ]
-    return objects, points
-
-
-def _weld_shift(model: mujoco.MjModel, data: mujoco.MjData, i: int, bodies: list[int]) -> Pose:
-    """Return how the second body would move if the first closed the weld: the gap."""
-    one, two = (Pose.from_quaternion(data.xpos[k], np.roll(data.xquat[k], -1)) for k in bodies)
-    relative = Pose.from_quaternion(np.zeros(3), np.roll(model.eq_data[i, 6:10], -1))
-    # In the frame of the first body: where the second is when the weld is closed.
-    turned = one.rotation @ relative.rotation
-    first, second = model.eq_data[i, 3:6], model.eq_data[i, :3]
-    at = one.position + one.rotation @ first - turned @ second
-    return two.compose(Pose(at, turned).inverse())

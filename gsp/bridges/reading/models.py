@@ -15,7 +15,7 @@ from gsp.bridges.reading.packages import design_of_package
 from gsp.bridges.reading.sdf import read_sdf
 from gsp.bridges.reading.urdf import read_urdf
 from gsp.checks import check_text
-from gsp.errors import GspError, MalformedFile, MissingSoftware, expected
+from gsp.errors import GspError, InvalidInput, MalformedFile, MissingSoftware, expected
 from gsp.model.design import Design
 
 READERS: Mapping[str, Callable[[Path, str, str], Linkage]] = MappingProxyType(
@@ -39,7 +39,10 @@ def read_model(
     balls, two or three turns whose axes meet (S), or a slide and a turn along one line (C). Between
     them is a slide, for CCC legs with a turn. A slide or a turn at the base with two spherical
     joints behind it is a leg driven there, by a slider or a crank. The pose of the file is the home
-    pose. Limits of actuated joints are the strokes.
+    pose. Limits of actuated joints are the strokes. Without actuators in the file the slides, or
+    the first joints of legs without one behind it, are taken for driven.
+    A model that the legs of a design do not describe is refused: joints that hold the platform
+    beside the legs, coupled joints, legs of fewer than six independent freedoms.
 
     Parameters
     ----------
@@ -52,7 +55,8 @@ def read_model(
         Of the design; default that in the file.
     base, platform : str
         Names of the bodies, of models only. Default for the base: what is fixed to the world, or
-        the root; for the platform: the body to which most chains lead from there.
+        the root; for the platform: the body to which most chains lead from there. Other mechanisms
+        in the file are passed over if one of them is given.
 
     Returns
     -------
@@ -66,6 +70,8 @@ def read_model(
     MalformedFile
         With the file, and line or element and key of the first mistake, or with the joints of the
         leg that is none of the catalogue.
+    InvalidInput
+        If a body is named for a file of a package.
     MissingSoftware
         If MJCF is read without MuJoCo, or YAML without PyYAML.
 
@@ -87,10 +93,15 @@ def read_model(
     if suffix not in FORMS:
         wanted = "a model ending in " + ", ".join(FORMS)
         raise MalformedFile(expected(str(file), wanted, suffix or "no suffix"))
+    for role, body in (("base", base), ("platform", platform)):
+        if body and suffix in PACKAGES:
+            wanted = f'"", as {file.name} is a file of a package, which names no bodies'
+            raise InvalidInput(expected(role, wanted, body))
     try:
         if suffix in PACKAGES:
             return design_of_package(file, name)
-        return design_of(READERS[suffix](file, base, platform), name)
+        linkage = READERS[suffix](file, base, platform)
+        return design_of(linkage, name, chosen=bool(base or platform))
     except (MalformedFile, MissingSoftware):
         raise
     except GspError as error:

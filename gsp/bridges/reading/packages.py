@@ -27,10 +27,17 @@ NAMES = ("oKermorgant/cdpr", "IRMA-LAB/cdpr_matlab", "64-B1T/basic_robotics")
 
 
 class Form(NamedTuple):
-    """A form of files: the keys by which it is recognised, and its reader."""
+    """A form of files: keys by which it is recognised, its reader, and the key of the name."""
 
     keys: tuple[str, ...]
     read: Callable[[Keys, str], Design]
+    name: str = ""
+
+    def name_of(self, keys: Keys) -> str:
+        """Return the name that a file states, or an empty text."""
+        if not self.name or self.name not in keys or keys[self.name].content in ("", None):
+            return ""
+        return keys[self.name].text()
 
 
 def design_of_package(path: Path, name: str | None = None) -> Design:
@@ -53,7 +60,9 @@ def design_of_package(path: Path, name: str | None = None) -> Design:
     keys = read_keys(path)
     for form in FORMS:
         if all(_has(keys, key) for key in form.keys):
-            return form.read(keys, path.stem if name is None else name)
+            if name is None:
+                name = form.name_of(keys) or path.stem
+            return form.read(keys, name)
     wanted = "a file of " + ", ".join(NAMES)
     known = "; ".join(" and ".join(form.keys) for form in FORMS)
     raise MalformedFile(expected(f"{path}, keys", f"{wanted} (with {known})", _keys_of(keys)))
@@ -93,7 +102,7 @@ def _points(keys: Keys, name: str) -> Design:
 def _actuators(keys: Keys, name: str) -> Design:
     """Cable robots of IRMA-LAB/cdpr_matlab, with pulleys as points."""
     actuators = keys["actuator"].items(LEAST_LEGS)
-    used = [x for x in actuators if "active" not in x or x["active"].content is not False]
+    used = [x for x in actuators if "active" not in x or x["active"].flag()]
     if len(used) < LEAST_LEGS:
         keys["actuator"].fail(f"at least {LEAST_LEGS} active entries")
     return Design(
@@ -169,5 +178,5 @@ FORMS = (
     Form(("points",), _points),
     Form(("model.points",), _points),
     Form(("actuator",), _actuators),
-    Form(("BottomPlate", "TopPlate"), _plates),
+    Form(("BottomPlate", "TopPlate"), _plates, name="Name"),
 )

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from gsp.bridges.drives import NO_STROKE
-from gsp.bridges.reading.beside import Beside, read_beside
-from gsp.bridges.reading.linkages import Freedom, Link, Linkage
-from gsp.bridges.reading.sdf import freedoms_of
+from gsp.bridges.reading.beside import read_beside
+from gsp.bridges.reading.linkages import Coupling, Freedom, Link, Linkage
+from gsp.bridges.reading.urdf_loops import gazebo_loops, loops_beside
 from gsp.bridges.reading.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.geometry.pose import Pose
@@ -38,27 +39,55 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     file = XmlFile(path)
     if file.root.tag != "robot":
         file.fail(file.root, "", "<robot>", f"<{cut(file.root.tag)}>")
-    names = [file.attribute(link, "name") for link in file.root.iterfind("link")]
+    file.refuse_macros()
+    names = file.names(file.root.findall("link"))
+    nodes = file.root.findall("joint")
+    file.names(nodes)
     beside = read_beside(path.with_name(path.name + ".loops.json"))
     places, joints = _tree(file, names)
     root = next(name for name in names if name not in {j.child for j in joints})
-    links = [*joints, *_loops(file, beside, places), *_gazebo_loops(file, beside, places)]
-    if len(links) == len(joints):
+    loops = [*loops_beside(file, beside, places), *gazebo_loops(file, beside, places, joints)]
+    if not loops:
         wanted = "loops beside it in NAME.urdf.loops.json, or joints in <gazebo>"
         raise MalformedFile(expected(str(path), wanted, "none: the legs are open"))
-    floating = {j.name for j in joints if not j.freedoms} & _floating(file)
-    kept = [beside.applied(link) for link in links if link.name not in floating]
+    floating = {x.get("name", "") for x in nodes if x.get("type") == "floating"}
+    driven = _driven(file, {x.name for x in joints})
+    links = [_stated(x, driven) for x in joints if x.name not in floating] + loops
     return Linkage(
         name=file.root.get("name", ""),
         base=base or root,
         platform=platform or beside.platform,
         places=places,
-        links=kept,
+        links=[beside.applied(link) for link in links],
+        couplings=list(_couplings(file)),
     )
 
 
-def _floating(file: XmlFile) -> set[str]:
-    return {x.get("name", "") for x in file.root.iterfind("joint") if x.get("type") == "floating"}
+def _driven(file: XmlFile, names: set[str]) -> set[str]:
+    """Return the joints for which the file has a transmission or an interface of commands."""
+    found = file.root.findall("transmission/joint")
+    for node in file.root.iterfind("ros2_control/joint"):
+        found += [node] if node.find("command_interface") is not None else []
+    for node in found:
+        if file.attribute(node, "name") not in names:
+            file.fail(node, "name", "the name of a joint", brief(node.get("name")))
+    return {file.attribute(node, "name") for node in found}
+
+
+def _stated(link: Link, driven: set[str]) -> Link:
+    """Return a joint whose freedoms know whether they are driven, where the file states it."""
+    if not driven:
+        return link
+    freedoms = [replace(x, active=link.name in driven) for x in link.freedoms]
+    return replace(link, freedoms=freedoms)
+
+
+def _couplings(file: XmlFile) -> Iterator[Coupling]:
+    for node in file.root.iterfind("joint"):
+        mimic = file.only(node, "mimic")
+        if mimic is not None:
+            names = (file.attribute(node, "name"), file.attribute(mimic, "joint"))
+            yield Coupling(file.where(node), names, f"<mimic> of {brief(names[1])}")
 
 
 def _tree(file: XmlFile, names: list[str]) -> tuple[dict[str, Pose], list[Link]]:
@@ -99,8 +128,8 @@ def _joint(file: XmlFile, node: Node, parent: str, child: str, place: Pose) -> L
         file.fail(node, "type", "one of " + ", ".join(KINDS), brief(kind))
     freedoms = []
     for motion in KINDS[kind] or ():
-        axis = node.find("axis")
-        text = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
+        axis = file.only(node, "axis")
+        text = "1 0 0" if axis is None else axis.get("xyz", "")
         direction = place.rotation @ file.direction(node, "<axis> xyz", text)
         low, high = _limits(file, node, kind)
         freedoms.append(
@@ -117,7 +146,7 @@ def _joint(file: XmlFile, node: Node, parent: str, child: str, place: Pose) -> L
 
 
 def _limits(file: XmlFile, node: Node, kind: str) -> tuple[float, float]:
-    limit = node.find("limit")
+    limit = file.only(node, "limit")
     if limit is None or kind == "continuous":
         return -np.inf, np.inf
     low, high = (file.number(limit, key, 0.0) for key in ("lower", "upper"))
@@ -130,41 +159,10 @@ def _limits(file: XmlFile, node: Node, kind: str) -> tuple[float, float]:
 
 
 def _origin(file: XmlFile, node: Node) -> Pose:
-    origin = node.find("origin")
+    origin = file.only(node, "origin")
     if origin is None:
         return Pose(np.zeros(3))
-    text = f"{origin.get('xyz', '0 0 0')} {origin.get('rpy', '0 0 0')}"
-    return file.placement(node, "<origin> xyz, rpy", text)
-
-
-def _loops(file: XmlFile, beside: Beside, places: Mapping[str, Pose]) -> Iterator[Link]:
-    for loop in beside.loops:
-        for key, name in (("link_1", loop.link_1), ("link_2", loop.link_2)):
-            if name not in places:
-                wanted = f"a link of {file.path.name}"
-                where = f"{beside.path}, loop {brief(loop.name)}, {key}"
-                raise MalformedFile(expected(where, wanted, brief(name)))
-        there = places[loop.link_2].compose(loop.placement)
-        shift = there.compose(places[loop.link_1].inverse())
-        yield Link(name=f"loop {loop.name}", parent=loop.link_1, child=loop.link_2, shift=shift)
-
-
-def _gazebo_loops(file: XmlFile, beside: Beside, places: Mapping[str, Pose]) -> Iterator[Link]:
-    """Joints of SDF in <gazebo>, with the frame of the child, or a pose in it.
-
-    Those of loops that are beside the file are left out: they are the same, without a placement.
-    """
-    known = {(loop.link_1, loop.link_2) for loop in beside.loops}
-    for node in file.root.iterfind("gazebo/joint"):
-        ends = [file.text(node, tag) for tag in ("parent", "child")]
-        for tag, name in zip(("parent", "child"), ends, strict=True):
-            if name not in places:
-                file.fail(node, f"<{tag}>", "the name of a link", brief(name))
-        if tuple(ends) in known:
-            continue
-        pose = node.find("pose")
-        at = Pose(np.zeros(3)) if pose is None else file.placement(node, "<pose>", pose.text)
-        place = places[ends[1]].compose(at)
-        freedoms = freedoms_of(file, node, place)
-        name = file.attribute(node, "name")
-        yield Link(name=name, parent=ends[0], child=ends[1], freedoms=freedoms)
+    position, angles = (
+        file.numbers(node, f"<origin> {key}", origin.get(key, "0 0 0"), 3) for key in ("xyz", "rpy")
+    )
+    return Pose.from_rpy(position, angles)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 from xml.etree import ElementTree
@@ -10,8 +11,8 @@ from xml.parsers import expat
 import numpy as np
 
 from gsp.errors import MalformedFile, brief, cut, expected
+from gsp.files.cells import number_of
 from gsp.files.writing import read_text
-from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, unit
 
 Node = ElementTree.Element
@@ -77,12 +78,40 @@ class XmlFile:
             self.fail(node, key, "a name", "none" if value is None else "an empty text")
         return value
 
+    def only(self, node: Node, tag: str) -> Node | None:
+        """Return the child of that name, None if there is none; there may not be two."""
+        found = node.findall(tag)
+        if len(found) > 1:
+            self.fail(node, f"<{tag}>", "one at most", f"{len(found)}")
+        return found[0] if found else None
+
     def child(self, node: Node, tag: str) -> Node:
-        """Return the child that an element must have."""
-        found = node.find(tag)
+        """Return the child that an element must have, and only once."""
+        found = self.only(node, tag)
         if found is None:
             self.fail(node, f"<{tag}>", "one", "none")
         return found
+
+    def names(self, nodes: Sequence[Node]) -> list[str]:
+        """Return the names of elements, of which none may be that of another."""
+        known: set[str] = set()
+        for node in nodes:
+            name = self.attribute(node, "name")
+            if name in known:
+                self.fail(node, "name", "a name of its own", brief(name))
+            known.add(name)
+        return [self.attribute(node, "name") for node in nodes]
+
+    def refuse_macros(self) -> None:
+        """Raise an error at an element of xacro, whose program writes the model that is meant.
+
+        Raises
+        ------
+        MalformedFile
+        """
+        for node in self.root.iter():
+            if node.tag.startswith("xacro:"):
+                self.fail(node, "", "a model that the program xacro has written", "a macro of it")
 
     def text(self, node: Node, tag: str) -> str:
         """Return the text of the child that an element must have."""
@@ -93,10 +122,7 @@ class XmlFile:
 
     def numbers(self, node: Node, key: str, text: str | None, count: int) -> Array:
         """Return finite numbers that are separated by spaces."""
-        try:
-            values = np.array([float(x) for x in (text or "").split()])
-        except ValueError:
-            values = np.empty(0)
+        values = np.array([number_of(x) for x in (text or "").split()])
         if values.size != count or not np.isfinite(values).all():
             kind = "a finite number" if count == 1 else f"{count} finite numbers"
             self.fail(node, key, kind, brief(text) if text else "none")
@@ -113,8 +139,3 @@ class XmlFile:
         if not vector.any():
             self.fail(node, key, "a direction other than zero", brief(text))
         return unit(vector)
-
-    def placement(self, node: Node, key: str, text: str | None) -> Pose:
-        """Return a pose of x, y, z, roll, pitch and yaw."""
-        numbers = self.numbers(node, key, text, 6)
-        return Pose.from_rpy(numbers[:3], numbers[3:])

@@ -13,6 +13,7 @@ from gsp.bridges.reading import FORMS
 from gsp.cli.inputs.options import Force, refuse_unused
 from gsp.cli.outputs.console import say, warn
 from gsp.errors import InvalidInput, expected
+from gsp.files.cells import SUFFIXES
 from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
@@ -104,7 +105,11 @@ def import_file(
     check_writable(target, overwrite=force, suffixes=(".toml",))
     for coordinate in home or ():
         arguments.number("--home", coordinate)
-    if file.suffix.lower() in FORMS:
+    suffix = file.suffix.lower()
+    if suffix not in FORMS + SUFFIXES:
+        wanted = f"a table ({', '.join(SUFFIXES)}), or a model or package ({', '.join(FORMS)})"
+        raise InvalidInput(expected(str(file), wanted, suffix or "no suffix"))
+    if suffix in FORMS:
         design = _from_model(file, unit, name, base, platform)
         if home is not None:
             design = design.replace(home=Pose(home))

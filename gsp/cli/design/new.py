@@ -24,7 +24,7 @@ from gsp.files.cells import number_of
 from gsp.files.names import file_stem
 from gsp.files.writing import check_writable
 from gsp.model.design import Design
-from gsp.model.units import check_unit
+from gsp.model.units import METRES_PER_UNIT, check_unit
 
 
 class Arrangement(StrEnum):
@@ -80,7 +80,8 @@ def new(
     unit: Annotated[
         str | None,
         typer.Option(
-            help="Unit of length, such as mm. Default: none is stated.", show_default=False
+            help="Unit of length, such as mm. Default: m where it is asked for, else none.",
+            show_default=False,
         ),
     ] = None,
     strokes: Annotated[
@@ -191,10 +192,9 @@ def _unit() -> str:
 
 
 def _check_unit(what: str, text: str) -> None:
-    """Refuse a number, which is the answer to another question."""
-    check_unit(what, text)
-    if not isnan(number_of(text.replace(",", "."))):
-        wanted = "the name of a unit of length, such as mm, and no number"
+    """Refuse what names no unit of length, such as the answer to another question."""
+    if check_unit(what, text) and text not in METRES_PER_UNIT:
+        wanted = "the name of a unit of length: " + ", ".join(METRES_PER_UNIT)
         raise InvalidInput(expected(what, wanted, brief(text)))
 
 

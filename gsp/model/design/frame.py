@@ -129,6 +129,8 @@ def parameters_from_columns(columns: Mapping[str, Sequence[Any]], place: Place) 
     number = len(columns[REQUIRED[0]])
     legs = [_leg(columns, i, place) for i in range(number)]
     found: dict[str, Any] = {"legs": legs}
+    for i, leg in enumerate(legs):
+        _check_unused(columns, i, leg, place)
     for side in ("base", "platform"):
         found[f"{side}_points"] = [
             [_number(columns, name, i, place, "point") for name in POINTS[side]]
@@ -146,6 +148,21 @@ def parameters_from_columns(columns: Mapping[str, Sequence[Any]], place: Place) 
         wanted = "rows with at least six constraints"
         raise InvalidInput(expected("table", wanted, f"{number} rows"))
     return found
+
+
+def _check_unused(columns: Mapping[str, Sequence[Any]], i: int, leg: Leg, place: Place) -> None:
+    """Refuse a second pair of limits of a leg with one joint, and a part of a direction."""
+    for names in STROKES[len(leg.constraints) :]:
+        for name in names:
+            if name in columns and not is_missing(columns[name][i]):
+                wanted = f"nothing, as a leg {leg.name} has one actuated joint"
+                raise InvalidInput(expected(place(i, name), wanted, brief(columns[name][i])))
+    for axes in DIRECTIONS.values():
+        given = [name for name in axes if name in columns and not is_missing(columns[name][i])]
+        if given and len(given) < len(axes):
+            lacking = next(name for name in axes if name not in given)
+            wanted = f"a number, as {given[0]} has one"
+            raise InvalidInput(expected(place(i, lacking), wanted, "none"))
 
 
 def _leg(columns: Mapping[str, Sequence[Any]], i: int, place: Place) -> Leg:

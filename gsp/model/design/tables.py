@@ -18,7 +18,6 @@ from gsp.model.design.designs import Design
 from gsp.model.design.frame import (
     COLUMNS,
     DIRECTIONS,
-    STROKES,
     TEXTS,
     check_columns,
     is_missing,
@@ -91,7 +90,6 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
             }
         design = Design(**parameters_from_columns(columns, place), **parameters)
         _check_repeated(design, [where for where, _ in filled])
-        _check_strokes(columns, design, place)
     except GspError as error:
         raise MalformedFile(f"{path}: {error}") from error
     unused = _unused_directions(columns, design)
@@ -118,19 +116,6 @@ def _check_repeated(design: Design, places: list[str]) -> None:
 def _leg_key(leg: Leg) -> Any:
     drive = leg.drive
     return leg.name, None if drive is None else (drive.kind, *drive.numbers)
-
-
-def _check_strokes(columns: Mapping[str, list[Any]], design: Design, place: Any) -> None:
-    """Raise an error for strokes of joints that a leg does not have."""
-    for i, leg in enumerate(design.legs):
-        for number, names in enumerate(STROKES):
-            for name in names:
-                value = columns[name][i] if name in columns else None
-                if value is None or is_missing(value):
-                    continue
-                if number >= len(leg.constraints):
-                    wanted = f"nothing, as a leg {leg.name} has one actuated joint"
-                    raise InvalidInput(expected(place(i, name), wanted, brief(value)))
 
 
 def _unused_directions(columns: Mapping[str, list[Any]], design: Design) -> list[str]:

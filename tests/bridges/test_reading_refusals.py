@@ -1,0 +1,274 @@
+"""Models are read as the mechanism that they are, or refused with the reason."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.bridges import export, read_model
+from gsp.bridges.exports import SUFFIXES
+from gsp.errors import MalformedFile
+from gsp.geometry.pose import Pose
+from tests.bridges.test_reading import LIFT, foreign_mjcf, foreign_sdf, ring
+
+HEAD = '<mujoco model="other"><worldbody>'
+
+
+def assert_anchors(found, design=LIFT, shift=(0.0, 0.0, 0.0)):
+    np.testing.assert_allclose(found.base_points, design.base_points, atol=1e-9)
+    np.testing.assert_allclose(found.platform_points, design.platform_points + shift, atol=1e-9)
+
+
+def assert_refused(folder, name, text, message):
+    path = folder / name
+    path.write_text(text)
+    with pytest.raises(MalformedFile, match=message) as error:
+        read_model(path)
+    assert str(error.value).startswith(str(path))
+
+
+def edited(text, *changes):
+    for old, new in changes:
+        assert re.search(old, text, re.DOTALL), old
+        text = re.sub(old, new, text, count=1, flags=re.DOTALL)
+    return text
+
+
+def exported(form, folder, design=LIFT):
+    path = folder / f"lift{SUFFIXES[form]}"
+    export(design, design.home, form, path, overwrite=True)
+    return path
+
+
+# Loops that the file has open.
+
+
+def test_the_gap_of_a_fixed_loop_does_not_move_anchors(tmp_path):
+    """The platform is raised in the tree; or the file of loops has it at another place."""
+    path = exported("urdf", tmp_path)
+    text, beside = path.read_text(), tmp_path / "lift.urdf.loops.json"
+    raised = edited(text, (r'(name="base_to_platform".*?xyz="0.0 0.0 )1.5"', r'\g<1>1.75"'))
+    path.write_text(raised)
+    found = read_model(path)
+    assert_anchors(found)
+    assert found.home.position[2] == 1.75
+    path.write_text(text)
+    content = json.loads(beside.read_text())
+    for loop in content["loops"]:
+        loop["position"][2] += 0.25
+    beside.write_text(json.dumps(content))
+    assert_anchors(read_model(path), shift=[0.0, 0.0, 0.25])
+
+
+def upright_mjcf(weld):
+    """Ball, slide and ball, with all legs drawn upright; each ends in a body that is welded."""
+    bodies = loops = sites = ""
+    lengths = LIFT.at(LIFT.home).joints
+    for i, (a, b, length) in enumerate(
+        zip(LIFT.base_points, LIFT.platform_points, lengths, strict=True)
+    ):
+        bodies += f"""<body pos="{ring([a])[0]}"><joint type="ball"/><geom size="0.1"/>
+          <body pos="0 0 1"><joint name="s{i}" type="slide" axis="0 0 1" range="-0.5 0.5"/>
+          <geom size="0.1"/><body name="end{i}" pos="0 0 {length - 1}" quat="0.48 0.6 0.64 0">
+          <joint type="ball"/><geom size="0.1"/><site name="e{i}"/></body></body></body>"""
+        sites += f'<site name="p{i}" pos="{ring([b])[0]}" quat="0.6 0 0.8 0"/>'
+        loops += {
+            "relpose": f'<weld body1="top" body2="end{i}" relpose="{ring([b])[0]} 0.6 0 0 0.8"/>',
+            "sites": f'<weld site1="e{i}" site2="p{i}"/>',
+            "no torque": f'<weld site1="p{i}" site2="e{i}" torquescale="0"/>',
+        }[weld]
+    return f"""{HEAD}<body name="top" pos="{ring([LIFT.home.position])[0]}"><freejoint/>
+      <geom size="0.1"/>{sites}</body>{bodies}</worldbody><equality>{loops}</equality></mujoco>"""
+
+
+@pytest.mark.parametrize("weld", ["relpose", "sites"])
+def test_legs_that_are_drawn_upright_and_welded(weld, tmp_path):
+    path = tmp_path / "upright.xml"
+    path.write_text(upright_mjcf(weld))
+    found = read_model(path)
+    assert_anchors(found)
+    middle = LIFT.at(LIFT.home).joints[:, None]
+    np.testing.assert_allclose(found.strokes, middle + [-0.5, 0.5], rtol=1e-12)
+
+
+def test_a_weld_without_torque_is_a_ball(tmp_path):
+    path = tmp_path / "upright.xml"
+    ball, site = '<joint type="ball"/>', '<geom size="0.1"/><site'
+    path.write_text(upright_mjcf("no torque").replace(ball + site, site))
+    assert_anchors(read_model(path))
+
+
+@pytest.mark.parametrize("moved", [0.0, 0.1])
+def test_loops_that_are_stated_twice_are_refused(moved, tmp_path):
+    path = exported("urdf", tmp_path)
+    beside = tmp_path / "lift.urdf.loops.json"
+    content = json.loads(beside.read_text())
+    again = json.loads(json.dumps(content["loops"][2]))
+    again["position"][0] += moved
+    content["loops"].append(again)
+    beside.write_text(json.dumps(content))
+    with pytest.raises(MalformedFile, match=r"loop 'leg3': expected bodies .* once, received a se"):
+        read_model(path)
+
+
+# What holds the platform beside the legs, and joints that are coupled.
+
+MJCF = foreign_mjcf(LIFT)
+PASSIVE_LEGS = edited(MJCF, ("</mujoco>", '<actuator><motor joint="hand"/></actuator></mujoco>'), (
+    "</worldbody>", '<body name="arm"><joint name="hand" type="hinge"/><geom size="0.1"/></body>'
+    "</worldbody>"))  # fmt: skip
+MOTORS = "".join(f'<motor joint="ram{i}"/>' for i in range(6))
+DRIVEN = edited(MJCF, ("</mujoco>", f"<actuator>{MOTORS}</actuator></mujoco>"))
+SLIDES = "".join(f'<joint type="slide" axis="{x}"/>' for x in ("1 0 0", "0 1 0", "0 0 1"))
+TENDON = """<tendon><fixed name="both"><joint joint="ram0" coef="1"/><joint joint="ram1" coef="1"/>
+  </fixed></tendon>"""
+EQUAL = "</equality>"
+HOLDING = {
+    "guide": ("<freejoint/>", '<joint type="slide" axis="0 0 1"/>', "a joint of 1 freedoms"),
+    "ball": ("<freejoint/>", '<joint type="ball"/>', r"a joint of 3 freedoms \(ball"),
+    "slides": ("<freejoint/>", SLIDES, "a joint of 3 freedoms"),
+    "pin": (EQUAL, f'<connect body1="top" body2="world" anchor="0 0 0"/>{EQUAL}',
+            "nothing but the legs that holds the platform 'top', received a joint of 3"),
+    "weld": (EQUAL, f'<weld body1="top" body2="world"/>{EQUAL}', "'top', which is fixed to it"),
+    "coupled": (EQUAL, f'<joint joint1="ram0" joint2="ram3"/>{EQUAL}',
+                "a constraint between the joints 'ram0' and 'ram3'"),
+    "locked": (EQUAL, f'<joint joint1="ram2"/>{EQUAL}', "a constraint that holds the joint 'ram2'"),
+    "tendon": (EQUAL, f'<tendon tendon1="both"/>{EQUAL}{TENDON}', "received tendon"),
+    "one inactive": ("<connect ", '<connect active="false" ', "received 5 legs with 5"),
+    "no actuator": ('<motor joint="ram5"/>', "", "leg 6 .*: expected an actuator of the slide 'ra"),
+    "one motor": ('<motor joint="ram0"/><motor joint="ram1"/>', '<motor tendon="both"/>',
+                  "one actuator of 'ram0' and 'ram1'"),
+    "site": ("</actuator>", '<motor site="tip0"/></actuator>', "an actuator of .*received a site"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", HOLDING)
+def test_what_holds_platform_or_joints_in_mjcf(case, tmp_path):
+    old, new, message = HOLDING[case]
+    extra = ("</mujoco>", f"{TENDON}</mujoco>") if case == "one motor" else ("top", "top")
+    assert_refused(tmp_path, "held.xml", edited(DRIVEN, extra, (old, new)), message)
+
+
+def test_all_legs_inactive(tmp_path):
+    text = MJCF.replace("<connect ", '<connect active="false" ')
+    assert_refused(tmp_path, "open.xml", text, "expected legs between base and 'top', received no")
+
+
+def test_actuators_of_other_joints_leave_no_slide_driven(tmp_path):
+    message = "leg 1 .*: expected an actuator of the slide 'ram0', received none, though the file"
+    assert_refused(tmp_path, "hand.xml", PASSIVE_LEGS, message)
+
+
+def test_driven_hinges_of_legs_are_refused(tmp_path):
+    text = edited(DRIVEN, ('<joint type="hinge"', '<joint name="first" type="hinge"'),
+                  ("</actuator>", '<motor joint="first"/></actuator>'))  # fmt: skip
+    message = "leg 1 .*: expected actuators of 'ram0' only, received one that drives the turn 'fir"
+    assert_refused(tmp_path, "hinge.xml", text, message)
+
+
+HARMLESS = {
+    "driven": ("top", "top"),
+    "two motors at one slide": ("</actuator>", '<position joint="ram0"/></actuator>'),
+    "one joint by a tendon": ('<motor joint="ram0"/>', '<motor tendon="one"/>'),
+    "free by six joints": ("<freejoint/>", f'{SLIDES}<joint type="ball"/>'),
+    "inactive coupling": (EQUAL, f'<joint joint1="ram0" joint2="ram3" active="false"/>{EQUAL}'),
+    "gripper": (
+        "<freejoint/>",
+        '<freejoint/><body><joint name="f1" type="hinge"/><geom size="0.1"/></body>'
+        '<body><joint name="f2" type="hinge"/><geom size="0.1"/></body>',
+    ),
+}
+
+
+@pytest.mark.parametrize("case", HARMLESS)
+def test_what_holds_nothing_is_read(case, tmp_path):
+    text = edited(DRIVEN, HARMLESS[case])
+    if case == "gripper":
+        text = edited(text, (EQUAL, f'<joint joint1="f1" joint2="f2"/>{EQUAL}'))
+    if "tendon" in case:
+        one = TENDON.replace("both", "one").replace('<joint joint="ram1" coef="1"/>', "")
+        text = edited(text, ("</mujoco>", f"{one}</mujoco>"))
+    path = tmp_path / "driven.xml"
+    path.write_text(text)
+    assert_anchors(read_model(path))
+
+
+def test_a_second_mechanism_is_read_where_it_is_named(tmp_path):
+    """A hexapod on a platform of another; and two on one base."""
+    upper = foreign_mjcf(LIFT).replace("top", "roof").replace("foreign", "upper")
+    inner = re.search(r"<worldbody>(.*)</worldbody>", upper, re.DOTALL)[1]
+    loops = re.search(r"<equality>(.*)</equality>", upper, re.DOTALL)[1]
+    for old in ("tube", "rod", "ram", "tip", "ball", "cover"):
+        inner, loops = inner.replace(f'"{old}', f'"u{old}'), loops.replace(f'"{old}', f'"u{old}')
+    inner = inner.replace('type="uball"', 'type="ball"')
+    roof, legs = re.search(r"(.*?</body>)(.*)", inner, re.DOTALL).groups()
+    above = roof.replace('pos="0.0 0.0 1.5"', 'pos="0 0 3"')
+    assert above != roof
+    stacked = edited(MJCF, ("</body>", f"{legs}</body>"), (EQUAL, f"{loops}{EQUAL}"),
+                     ("</worldbody>", f"{above}</worldbody>"))  # fmt: skip
+    assert_refused(tmp_path, "stack.xml", stacked, "one mechanism with loops, .*loops also at 'utu")
+    assert_anchors(read_model(tmp_path / "stack.xml", platform="top"))
+    found = read_model(tmp_path / "stack.xml", base="top", platform="roof")
+    assert_anchors(found)
+
+
+# Which of the two actuators of a leg between lines is driven.
+
+CCC = gsp.Design(
+    ["D4"] * 4 + ["A1"] * 2,
+    *np.random.default_rng(6).normal(size=(4, 6, 3)),
+    unit="m",
+    home=Pose([0.1, 0.2, 3.0]),
+)
+
+
+@pytest.mark.parametrize("form", ["urdf", "sdf"])
+def test_legs_between_lines_need_a_statement_of_what_is_driven(form, tmp_path):
+    path = exported(form, tmp_path, CCC)
+    beside = next(tmp_path.glob("*.json"))
+    content = json.loads(beside.read_text())
+    del content["joints_at_zero"]
+    beside.write_text(json.dumps(content))
+    assert [leg.name for leg in read_model(path).legs] == [leg.name for leg in CCC.legs]
+    message = "leg 1 .*: expected which of 'd1' and 'spin1' an actuator drives, received no stat"
+    text = re.sub(r'"leg(\d)_turn"', r'"spin\1"', path.read_text())
+    assert_refused(tmp_path, path.name, text, message)
+    text = re.sub(r'"d(\d)"', r'"slide\1"', text)
+    assert_refused(tmp_path, path.name, text, "expected which of 'slide1' and 'spin1'")
+
+
+def test_transmissions_of_urdf_state_what_is_driven(tmp_path):
+    path = exported("urdf", tmp_path)
+    beside = tmp_path / "lift.urdf.loops.json"
+    loops = {"loops": json.loads(beside.read_text())["loops"]}
+    beside.write_text(json.dumps(loops))
+    words = [f'<transmission name="t{i}"><joint name="d{i}"/></transmission>' for i in range(1, 7)]
+    text = path.read_text()
+    path.write_text(edited(text, ("</robot>", "".join(words) + "</robot>")))
+    assert_anchors(read_model(path))
+    some = edited(text, ("</robot>", "".join(words[1:]) + "</robot>"))
+    assert_refused(tmp_path, path.name, some, "leg 1 .*: expected an actuator of the slide 'd1'")
+
+
+# Legs with six joints of which two do the same.
+
+
+@pytest.mark.parametrize(("second", "independent"), [("0 1 0", 6), ("0 0 1", 5), ("1 0 0", 5)])
+def test_legs_of_five_independent_freedoms_are_refused(second, independent, tmp_path):
+    """A turn about the leg is one of the ball at its end; parallel axes at a point are one."""
+    text = foreign_sdf(LIFT, ("universal", "ball"), cylinder=False)
+    path = tmp_path / "legs.sdf"
+    path.write_text(text.replace("<axis2><xyz>0 1 0", f"<axis2><xyz>{second}"))
+    if independent == 6:
+        assert_anchors(read_model(path))
+        return
+    with pytest.raises(MalformedFile, match=r"leg 1 .*(6, of them 5 independent|turns whose axes)"):
+        read_model(path)
+
+
+def test_axes_that_nearly_meet_are_refused_with_their_distance(tmp_path):
+    first = r'(<joint type="hinge" axis="[^"]*"/><joint type="hinge")'
+    text = edited(MJCF, (first, r'\1 pos="0 0 2e-4"'))
+    assert_refused(tmp_path, "near.xml", text, r"axes miss each other by \d.*e-05 m, which is more")
