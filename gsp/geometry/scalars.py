@@ -80,10 +80,13 @@ def full_arc(sine: Scalar, cosine: Scalar) -> Scalar:
     sine, cosine : real scalars of the same kind
     """
     if isinstance(sine, np.ndarray):
-        return np.arctan2(sine, cosine)
-    if isinstance(sine, float | int):
-        return math.atan2(sine, cosine)
-    return _apply("atan2", sine, cosine)
+        angle: Any = np.arctan2(sine, cosine)
+    elif isinstance(sine, float | int):
+        angle = math.atan2(sine, cosine)
+    else:
+        angle = _apply("atan2", sine, cosine)
+    # A sine of −0, or below it by rounding, gives −π.
+    return choose(less(-math.pi, angle), angle, angle + math.tau)
 
 
 def _apply(name: str, x: Any, *others: Any) -> Any:

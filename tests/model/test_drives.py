@@ -291,6 +291,14 @@ def test_drives_are_compared_by_value():
     assert len({Crank(arm=[1, 0, 0], rod=2), Crank(arm=(1, 0, 0), rod=2.0)}) == 1
 
 
+def test_half_a_turn_of_a_crank_is_counted_as_pi():
+    """The tip is at (−1, 0, 0), √2 from the anchor; √2 and its square are rounded."""
+    crank = Crank(arm=(1.0, 0.0, 0.0), rod=np.sqrt(2.0), branch=-1)
+    design = gsp.Design([crank] * 6, np.zeros((6, 3)), [[0.0, 1.0, 0.0]] * 6, [[0.0, 0.0, 1.0]] * 6)
+    for pose in (gsp.Pose(np.zeros(3)), gsp.Pose(np.zeros((3, 3)))):
+        np.testing.assert_array_equal(design.at(pose).joints, np.pi)
+
+
 @pytest.mark.parametrize("rod", [0.0, -1.0, np.nan, np.inf, "2", None, [1.0, 2.0]])
 def test_rods_are_positive(rod):
     for make in (lambda: Slider(rod=rod), lambda: Crank(arm=[1, 0, 0], rod=rod)):
