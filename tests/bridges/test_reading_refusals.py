@@ -153,7 +153,7 @@ def test_what_holds_platform_or_joints_in_mjcf(case, tmp_path):
 
 def test_all_legs_inactive(tmp_path):
     text = MJCF.replace("<connect ", '<connect active="false" ')
-    assert_refused(tmp_path, "open.xml", text, "expected legs between base and 'top', received no")
+    assert_refused(tmp_path, "open.xml", text, "at least 3 chains of joints from 'world'")
 
 
 def test_actuators_of_other_joints_leave_no_slide_driven(tmp_path):
@@ -192,6 +192,26 @@ def test_what_holds_nothing_is_read(case, tmp_path):
         text = edited(text, ("</mujoco>", f"{one}</mujoco>"))
     path = tmp_path / "driven.xml"
     path.write_text(text)
+    assert_anchors(read_model(path))
+
+
+def test_the_platform_is_the_body_of_the_loops(tmp_path):
+    """Among bodies that are fixed to each other; also where a loop names it first."""
+    path = exported("urdf", tmp_path)
+    beside = tmp_path / "lift.urdf.loops.json"
+    content = json.loads(beside.read_text())
+    for loop in content["loops"]:
+        loop["link_1"], loop["link_2"] = loop["link_2"], loop["link_1"]
+        loop["position"] = [-x for x in loop["position"]]  # none of them is turned
+    beside.write_text(json.dumps(content))
+    text = path.read_text()
+    path.write_text(text[: text.index("<gazebo>")] + "</robot>")
+    assert_anchors(read_model(path))
+    links = re.findall(r'  <link name="platform">.*?</link>\n', text, re.DOTALL)
+    joint = text.index("<joint")
+    last = text.replace(links[0], "")[: joint - len(links[0])] + links[0] + text[joint:]
+    path.write_text(last)
+    beside.unlink()
     assert_anchors(read_model(path))
 
 

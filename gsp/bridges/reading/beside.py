@@ -67,8 +67,16 @@ def read_beside(path: Path) -> Beside:
         loops=closings,
         active=numbers[0],
         passive=numbers[1],
-        platform=closings[0].link_2 if closings else "",
+        platform=_common(closings),
     )
+
+
+def _common(closings: Sequence[Closing]) -> str:
+    """Return the link that all loops have."""
+    for name in (x for loop in closings[:1] for x in (loop.link_2, loop.link_1)):
+        if all(name in (loop.link_1, loop.link_2) for loop in closings):
+            return name
+    return ""
 
 
 def _closing(loop: Keys) -> Closing:

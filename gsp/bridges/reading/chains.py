@@ -98,7 +98,10 @@ def _unknown(role: str, name: str, names: list[str]) -> UnknownName:
 
 
 def _busiest(linkage: Linkage, groups: Groups) -> str:
-    """Return the body to which most chains lead from the base."""
+    """Return the body to which most chains lead from the base.
+
+    Of bodies that are fixed to each other it is the likely one, else the one with most joints.
+    """
     first = groups.first
     counts = {
         group: len(_components(linkage, groups, group)[0])
@@ -107,15 +110,22 @@ def _busiest(linkage: Linkage, groups: Groups) -> str:
     }
     most = max(counts.values(), default=0)
     best = [name for name, count in counts.items() if count == most]
+    if most < LEAST_CHAINS and first.get(linkage.likely) == first[linkage.base]:
+        return linkage.likely
     if most < LEAST_CHAINS:
         base = brief(linkage.base)
         wanted = f"a platform with at least {LEAST_CHAINS} chains of joints from {base}"
         raise InvalidInput(expected("model", wanted, f"{most} at most"))
+    likely = first.get(linkage.likely, "")
+    if likely in best:
+        return linkage.likely
     if len(best) > 1:
         wanted = "one body to which most chains lead"
         named = " and ".join(map(cut, best))
         raise InvalidInput(expected("model", wanted, named, "name it as platform"))
-    return best[0]
+    members = [name for name, group in first.items() if group == best[0]]
+    ends = [name for link in linkage.links for name in (link.parent, link.child)]
+    return max(members, key=ends.count)
 
 
 def _ends(link: Link, groups: Groups) -> set[str]:

@@ -52,8 +52,8 @@ def driven_leg(freedoms: Sequence[Freedom], where: str, size: float) -> FoundLeg
     Raises
     ------
     InvalidInput
-        If the joints behind the first are not two spherical joints, no actuator drives it, or the
-        tip of a crank is on its axis.
+        If the joints behind the first are not two spherical joints, no actuator drives it, the tip
+        of a crank is on its axis, or the drive is at a dead centre.
     """
     first = freedoms[0]
     tip, rest = joint_at_end(freedoms[1:], where, size, "tip")
@@ -72,7 +72,11 @@ def driven_leg(freedoms: Sequence[Freedom], where: str, size: float) -> FoundLeg
             raise InvalidInput(expected(where, wanted, f"one that is {off_axis:.3g} m from it"))
     make = _slider if first.kind == "slide" else _crank
     point, slope, drive = make(first, value, tip.point, float(norm(rod)))
-    if rod @ slope < 0.0:
+    sense = float(rod @ slope) / float(norm(rod) * norm(slope))
+    if abs(sense) <= TOLERANCE:
+        wanted = "a rod that is not perpendicular to the way of its tip, which decides the branch"
+        raise InvalidInput(expected(where, wanted, f"a cosine of {sense:.2g} between them"))
+    if sense < 0.0:
         drive = type(drive)(**{**vars(drive), "branch": -1})
     low, high = (value + x if np.isfinite(x) else np.nan for x in (first.low, first.high))
     return FoundLeg("D1", End(point, first.axis), End(top.point, NONE), [(low, high)], drive)

@@ -105,6 +105,8 @@ class Linkage:
         Name of the body that does not move.
     platform : str
         Name of the platform, "" to find it.
+    likely : str
+        Name of the body that may be the platform, if the most chains lead to it.
     places : mapping of name to Pose
         Of all bodies.
     links : sequence of Link
@@ -114,6 +116,7 @@ class Linkage:
     name: str
     base: str
     platform: str = ""
+    likely: str = ""
     places: Mapping[str, Pose]
     links: Sequence[Link]
     couplings: Sequence[Coupling] = ()

@@ -78,7 +78,8 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
     return Linkage(
         name=root.get("model", title),
         base=base or WORLD,
-        platform=platform or _free_body(program, model, names),
+        platform=platform,
+        likely=_free_body(program, model, names),
         places=places,
         links=links,
         couplings=[*couplings, *equalities(program, model)],

@@ -100,6 +100,7 @@ class Frames:
         self._open.add(name)
         node = self._nodes[name]
         outer = self._file.text(node, "child") if node.tag == "joint" else MODEL
+        outer = MODEL if outer == WORLD else outer
         pose = self._file.only(node, "pose")
         own = Pose(np.zeros(3))
         if node.tag == "frame":

@@ -56,7 +56,8 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     return Linkage(
         name=file.root.get("name", ""),
         base=base or root,
-        platform=platform or beside.platform,
+        platform=platform,
+        likely=beside.platform,
         places=places,
         links=[beside.applied(link) for link in links],
         couplings=list(_couplings(file)),
