@@ -146,6 +146,19 @@ def test_frames_of_loops_in_gazebo_elements(pose, tmp_path):
     assert_refused(tmp_path, "lift.urdf", wrong, "<pose> relative_to: expected the name of a link")
 
 
+@pytest.mark.parametrize("form", ["urdf", "sdf"])
+@pytest.mark.parametrize("key", ["joints_at_zero", "slides_at_zero"])
+def test_values_of_joints_that_are_not_there_are_refused(form, key, tmp_path):
+    """Else a joint of another name would be passive, or its line begin elsewhere."""
+    path = exported(form, tmp_path)
+    beside = next(tmp_path.glob("*.json"))
+    content = json.loads(beside.read_text())
+    content[key]["d7"] = 1.0
+    beside.write_text(json.dumps(content))
+    with pytest.raises(MalformedFile, match=rf"{key}: expected names of joints .*received 'd7'"):
+        read_model(path)
+
+
 def test_known_names_are_listed_in_all_forms(tmp_path):
     for form in FORMS:
         with pytest.raises(MalformedFile, match=r"unknown base 'nope'[;.] [Kk]nown: .*leg1_lo"):

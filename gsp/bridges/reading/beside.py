@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
 from gsp.bridges.reading.keys import Keys, read_keys
 from gsp.bridges.reading.linkages import Freedom, Link
+from gsp.errors import MalformedFile, brief, expected
 from gsp.geometry.pose import Pose
 
 KEYS = ("loops", "joints_at_zero", "slides_at_zero")
@@ -32,6 +33,15 @@ class Beside:
     active: Mapping[str, float] = field(default_factory=dict)
     passive: Mapping[str, float] = field(default_factory=dict)
     platform: str = ""
+
+    def check_joints(self, known: Collection[str]) -> None:
+        """Raise MalformedFile if it has a value of a joint that the model does not have."""
+        for key, values in zip(KEYS[1:], (self.active, self.passive), strict=True):
+            for name in values:
+                if name not in known:
+                    where = f"{self.path}, key {key}"
+                    wanted = "names of joints of the model"
+                    raise MalformedFile(expected(where, wanted, brief(name)))
 
     def applied(self, link: Link) -> Link:
         """Return a link whose freedoms know what drives them, and what their joints count."""

@@ -39,7 +39,9 @@ def read_sdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     places = {name: frames.place(name, model) for name in names}
     stem = path.name if path.suffix == ".sdf" else path.stem
     beside = read_beside(path.with_name(stem + ".joints.json"))
-    joints = [_joint(file, node, frames, beside, version) for node in model.iterfind("joint")]
+    nodes = model.findall("joint")
+    beside.check_joints(file.names(nodes))
+    joints = [_joint(file, node, frames, beside, version) for node in nodes]
     grounded = [x for x in joints if WORLD in (x.parent, x.child)]
     if grounded:
         places[WORLD] = Pose(np.zeros(3))

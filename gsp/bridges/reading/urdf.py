@@ -42,8 +42,8 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     file.refuse_macros()
     names = file.names(file.root.findall("link"))
     nodes = file.root.findall("joint")
-    file.names(nodes)
     beside = read_beside(path.with_name(path.name + ".loops.json"))
+    beside.check_joints(file.names(nodes))
     places, joints = _tree(file, names)
     root = next(name for name in names if name not in {j.child for j in joints})
     loops = [*loops_beside(file, beside, places), *gazebo_loops(file, beside, places, joints)]
