@@ -95,6 +95,7 @@ WRONG_URDF = {
     "xyz and rpy": ((r'(<joint name="d2".*?)xyz="[^"]*" rpy="', r'\1xyz="0 0" rpy="0 '),
                     "<joint name='d2'>, <origin> xyz: expected 3 finite numbers, received '0 0'"),
     "underscore": ((r'(<joint name="d2".*?xyz=")[^ ]*', r"\g<1>1_0"), "received '1_0 "),
+    "large": ((r'(<joint name="d2".*?xyz=")[^ ]*', r"\g<1>1e101"), "of at most 1e.100 in size"),
     "digits": ((r'(<joint name="d2".*?xyz=")[^ ]*', "\\g<1>\u0662"), "<origin> xyz: expected 3"),
     "link twice": (("</robot>", '<link name="platform"/></robot>'), "name: expected a name of it"),
     "joint twice": (("</robot>", '<joint name="d1"/></robot>'), "name: expected a name of its own"),

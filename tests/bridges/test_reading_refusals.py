@@ -13,6 +13,7 @@ from gsp.errors import MalformedFile
 from gsp.geometry.pose import Pose
 from tests.bridges.test_reading import LIFT, foreign_mjcf, foreign_sdf, ring
 
+GEOM = '<geom size="0.1"/>'
 HEAD = '<mujoco model="other"><worldbody>'
 
 
@@ -292,3 +293,25 @@ def test_axes_that_nearly_meet_are_refused_with_their_distance(tmp_path):
     first = r'(<joint type="hinge" axis="[^"]*"/><joint type="hinge")'
     text = edited(MJCF, (first, r'\1 pos="0 0 2e-4"'))
     assert_refused(tmp_path, "near.xml", text, r"axes miss each other by \d.*e-05 m, which is more")
+
+
+def test_a_leg_far_from_the_others_does_not_widen_the_tolerance(tmp_path):
+    """The first axis of one leg misses the second by 2e-4; another leg is drawn 1000 away."""
+    text = upright_mjcf("sites").replace('type="ball"/>', 'type="hinge" axis="1 0 0"/>'
+                                         '<joint type="hinge" axis="0 1 0" pos="0 0 2e-4"/>'
+                                         '<joint type="hinge" axis="0 0 1"/>', 1)  # fmt: skip
+    message = "leg 1 .*axes miss each other by"
+    assert_refused(tmp_path, "near.xml", text, message)
+    last = ring([LIFT.base_points[-1]])[0]
+    assert_refused(tmp_path, "far.xml", text.replace(last, "1000 0 0"), message)
+
+
+def test_joints_that_are_all_at_one_point_are_refused(tmp_path):
+    legs = "".join(
+        f'<body name="b{i}"><joint type="hinge" axis="1 0 0"/>{GEOM}</body>' for i in range(3)
+    )
+    loops = "".join(f'<connect body1="b{i}" body2="top" anchor="0 0 0"/>' for i in range(3))
+    top = f'<body name="top"><joint type="hinge" axis="0 1 0"/>{GEOM}</body>'
+    text = f"{HEAD}{top}{legs}</worldbody><equality>{loops}</equality></mujoco>"
+    assert_refused(tmp_path, "point.xml", text, "a joint of 1 freedoms")
+    assert_refused(tmp_path, "point.xml", text.replace("hinge", "free", 1), "received 4")

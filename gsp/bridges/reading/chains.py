@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -103,10 +104,14 @@ def _busiest(linkage: Linkage, groups: Groups) -> str:
     Of bodies that are fixed to each other it is the likely one, else the one with most joints.
     """
     first = groups.first
+    ends = Counter(name for link in linkage.links for name in (link.parent, link.child))
+    joints = Counter(
+        name for link in linkage.links if link.freedoms for name in _ends(link, groups)
+    )
     counts = {
         group: len(_components(linkage, groups, group)[0])
         for group in dict.fromkeys(first.values())
-        if group != first[linkage.base]
+        if group != first[linkage.base] and joints[group] >= LEAST_CHAINS
     }
     most = max(counts.values(), default=0)
     best = [name for name, count in counts.items() if count == most]
@@ -115,7 +120,7 @@ def _busiest(linkage: Linkage, groups: Groups) -> str:
     if most < LEAST_CHAINS:
         base = brief(linkage.base)
         wanted = f"a platform with at least {LEAST_CHAINS} chains of joints from {base}"
-        raise InvalidInput(expected("model", wanted, f"{most} at most"))
+        raise InvalidInput(expected("model", wanted, "none"))
     likely = first.get(linkage.likely, "")
     if likely in best:
         return linkage.likely
@@ -124,8 +129,7 @@ def _busiest(linkage: Linkage, groups: Groups) -> str:
         named = " and ".join(map(cut, best))
         raise InvalidInput(expected("model", wanted, named, "name it as platform"))
     members = [name for name, group in first.items() if group == best[0]]
-    ends = [name for link in linkage.links for name in (link.parent, link.child)]
-    return max(members, key=ends.count)
+    return max(members, key=lambda name: ends[name])
 
 
 def _ends(link: Link, groups: Groups) -> set[str]:
@@ -143,16 +147,18 @@ def _components(
         for name in ends:
             near.setdefault(name, set()).update(ends)
     joining, others = list[frozenset[str]](), list[frozenset[str]]()
-    left = [g for g in dict.fromkeys(groups.first.values()) if g not in (base, platform)]
-    while left:
-        members, waiting, touched = {left[0]}, [left[0]], set()
+    seen = {base, platform}
+    for group in dict.fromkeys(groups.first.values()):
+        if group in seen:
+            continue
+        members, waiting, touched = {group}, [group], set()
         while waiting:
             around = near.get(waiting.pop(), set())
             touched |= around
             new = around - members - {base, platform}
             members |= new
             waiting += sorted(new)
-        left = [g for g in left if g not in members]
+        seen |= members
         (joining if {base, platform} <= touched else others).append(frozenset(members))
     return joining, others
 

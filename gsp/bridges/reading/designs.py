@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.bridges.reading.chains import Chains, chains_of
+from gsp.bridges.reading.chains import Chains, Path, chains_of
 from gsp.bridges.reading.driven import in_axes
 from gsp.bridges.reading.ends import FoundLeg, anchors_on_platform
 from gsp.bridges.reading.legs import leg_of
@@ -45,11 +45,10 @@ def design_of(linkage: Linkage, name: str | None = None, *, chosen: bool = False
         wanted = f"legs between base and {brief(platform)}"
         raise InvalidInput(expected("model", wanted, "none"))
     base, place = linkage.places[linkage.base], linkage.places[platform]
-    points = np.array([x.point for chain in chains for x in chain.freedoms])
-    size = float(norm(points - points.mean(axis=0)).max())
-    _check_guides(found, size)
+    sizes = [_size(chain) for chain in chains]
+    _check_guides(found, max(sizes))
     _check_couplings(linkage, found)
-    legs = [leg_of(chain, i + 1, size) for i, chain in enumerate(chains)]
+    legs = [leg_of(chain, i + 1, sizes[i]) for i, chain in enumerate(chains)]
     count = sum(len(leg.constraints.split()) for leg in legs)
     if count < FREEDOMS:
         wanted = f"legs with at least {FREEDOMS} constraints between base and {brief(platform)}"
@@ -70,6 +69,12 @@ def design_of(linkage: Linkage, name: str | None = None, *, chosen: bool = False
         unit="m",
         name=linkage.name if name is None else name,
     )
+
+
+def _size(chain: Path) -> float:
+    """Return the largest distance of a joint of a leg from the first one [m]."""
+    points = np.array([x.point for x in chain.freedoms])
+    return float(norm(points - points[0]).max())
 
 
 def _check_guides(chains: Chains, size: float) -> None:

@@ -42,7 +42,7 @@ def driven_leg(freedoms: Sequence[Freedom], where: str, size: float) -> FoundLeg
     where : str
         The leg, for errors.
     size : float [m]
-        Of the mechanism.
+        Of the leg.
 
     Returns
     -------

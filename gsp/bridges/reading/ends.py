@@ -13,7 +13,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.model.drives import Drive
 
-# Largest distance of what should meet, as a share of the size of the mechanism, and largest sine or
+# Largest distance of what should meet, as a share of the size of the leg, and largest sine or
 # cosine of what should be parallel or perpendicular: files often have six digits.
 TOLERANCE = 1e-5
 NONE = np.full(3, np.nan)
@@ -53,7 +53,7 @@ def joint_at_end(
     where : str
         The leg, for errors.
     size : float [m]
-        Of the mechanism.
+        Of the leg.
     side : "base", "tip" or "platform"
         Where they begin.
 
@@ -141,7 +141,7 @@ def check_near(distance: float, size: float, where: str, wanted: str) -> None:
 
 
 def _beyond(distance: float) -> str:
-    return f"{distance:.3g} m, which is more than {TOLERANCE:g} of the size"
+    return f"{distance:.3g} m, which is more than {TOLERANCE:g} of the leg"
 
 
 def anchors_on_platform(end: End, shift: Pose, platform: Pose) -> End:

@@ -27,7 +27,7 @@ def leg_of(path: Path, number: int, size: float) -> FoundLeg:
     number : int
         Of the leg, from 1, for errors.
     size : float [m]
-        Of the mechanism.
+        Of the leg.
 
     Returns
     -------

@@ -36,7 +36,7 @@ def rank(freedoms: Sequence[Freedom], size: float) -> int:
         return 0
     centre = points.mean(axis=0)
     span = float(norm(points - centre).max())
-    span = span if span > RANK_TOLERANCE * size else size
+    span = span if span > RANK_TOLERANCE * size else size or 1.0
     found = 0
     for steps in STEPS:
         screws = _screws(freedoms, centre, span, steps)

@@ -45,7 +45,8 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     beside = read_beside(path.with_name(path.name + ".loops.json"))
     beside.check_joints(file.names(nodes))
     places, joints = _tree(file, names)
-    root = next(name for name in names if name not in {j.child for j in joints})
+    children = {joint.child for joint in joints}
+    root = next(name for name in names if name not in children)
     loops = [*loops_beside(file, beside, places), *gazebo_loops(file, beside, places, joints)]
     if not loops:
         wanted = "loops beside it in NAME.urdf.loops.json, or joints in <gazebo>"
@@ -93,11 +94,11 @@ def _couplings(file: XmlFile) -> Iterator[Coupling]:
 
 def _tree(file: XmlFile, names: list[str]) -> tuple[dict[str, Pose], list[Link]]:
     """Return the places of all links, and the joints of the tree."""
-    nodes = {}
+    nodes, known = {}, set(names)
     for node in file.root.iterfind("joint"):
         ends = tuple(file.attribute(file.child(node, x), "link") for x in ("parent", "child"))
         for tag, name in zip(("parent", "child"), ends, strict=True):
-            if name not in names:
+            if name not in known:
                 file.fail(node, f"<{tag}> link", "the name of a link", brief(name))
         if ends[1] in nodes:
             file.fail(node, "<child> link", "a link that is no child yet", brief(ends[1]))

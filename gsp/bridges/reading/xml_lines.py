@@ -10,6 +10,7 @@ from xml.parsers import expat
 
 import numpy as np
 
+from gsp.arguments import LARGEST_NUMBER
 from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.files.cells import number_of
 from gsp.files.writing import read_text
@@ -121,11 +122,14 @@ class XmlFile:
         return found
 
     def numbers(self, node: Node, key: str, text: str | None, count: int) -> Array:
-        """Return finite numbers that are separated by spaces."""
+        """Return finite numbers that are separated by spaces; those of a vector have squares."""
         values = np.array([number_of(x) for x in (text or "").split()])
         if values.size != count or not np.isfinite(values).all():
             kind = "a finite number" if count == 1 else f"{count} finite numbers"
             self.fail(node, key, kind, brief(text) if text else "none")
+        if count > 1 and np.abs(values).max() > LARGEST_NUMBER:
+            wanted = f"numbers of at most {LARGEST_NUMBER:g} in size"
+            self.fail(node, key, wanted, brief(text))
         return values
 
     def number(self, node: Node, key: str, default: float) -> float:
