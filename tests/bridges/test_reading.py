@@ -421,6 +421,7 @@ WRONG_PLATES = [
     ("0.9", "-0.9", "BottomPlate.JointRadius", "a number > 0"),
     ("0.3", "0", "TopPlate.JointRadius", "a number > 0"),
     ("0.16", "9" * 400, "TopPlate.Thickness", "a finite number"),
+    ("0.16", "-0.16", "TopPlate.Thickness", "a number ≥ 0"),
     ("0.9", "9" * 102, "BottomPlate.JointRadius", r"a number of at most 1e\+100 in size"),
     (": 25", ": 200", "TopPlate.JointSpacing", r"an angle in \[0, 120\] degrees"),
     (": 1.5", ": 0.5", "Actuators.MaxExtension", "at least MinExtension, which is 0.75"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 
@@ -74,11 +75,7 @@ def rigid_groups(linkage: Linkage) -> Groups:
     return Groups(first=first, closed=closed)
 
 
-def _fail_repeated(link: Link) -> None:
+def _fail_repeated(link: Link) -> NoReturn:
     wanted = f"bodies {brief(link.parent)} and {brief(link.child)} to be fixed to each other once"
     got = "a second time, also through other bodies"
-    raise InvalidInput(expected(_named(link), wanted, got))
-
-
-def _named(link: Link) -> str:
-    return f"{link.where or 'joint'} {brief(link.name)}" if not link.where else link.where
+    raise InvalidInput(expected(link.where or f"joint {brief(link.name)}", wanted, got))

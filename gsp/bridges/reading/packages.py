@@ -117,7 +117,8 @@ def _actuators(keys: Keys, name: str) -> Design:
 def _plates(keys: Keys, name: str) -> Design:
     """Stewart platforms of 64-B1T/basic_robotics: pairs of anchors, above and below the plates."""
     bottom, top = keys["BottomPlate"], keys["TopPlate"]
-    thickness = [plate["Thickness"].number() for plate in (bottom, top)]
+    most = arguments.LARGEST_NUMBER
+    thickness = [plate["Thickness"].between(0.0, most, "a number ≥ 0") for plate in (bottom, top)]
     radii = [plate["JointRadius"].size() for plate in (bottom, top)]
     wanted = f"an angle in [0, {LARGEST_PAIR_ANGLE_DEG:g}] degrees"
     spacings = [
