@@ -296,6 +296,5 @@ def _print(table: Any, design: Design, path: Path) -> None:
 
 def _domain(facts: dict[str, Any]) -> str:
     domain = facts["domain"]
-    if domain == "all poses":
-        return "all poses"
-    return "a box of poses" if "order" in domain else "poses near the home pose"
+    part = "a box of poses" if "order" in domain else "poses near the home pose"
+    return "all poses" if domain == "all poses" else part
