@@ -137,6 +137,7 @@ HOLDING = {
                 "a constraint between the joints 'ram0' and 'ram3'"),
     "locked": (EQUAL, f'<joint joint1="ram2"/>{EQUAL}', "a constraint that holds the joint 'ram2'"),
     "tendon": (EQUAL, f'<tendon tendon1="both"/>{EQUAL}{TENDON}', "received tendon"),
+    "slide welded": (EQUAL, f'<weld body1="rod2" body2="tube2"/>{EQUAL}', "leg 3 .*freedoms"),
     "one inactive": ("<connect ", '<connect active="false" ', "received 5 legs with 5"),
     "no actuator": ('<motor joint="ram5"/>', "", "leg 6 .*: expected an actuator of the slide 'ra"),
     "one motor": ('<motor joint="ram0"/><motor joint="ram1"/>', '<motor tendon="both"/>',
@@ -174,6 +175,7 @@ HARMLESS = {
     "two motors at one slide": ("</actuator>", '<position joint="ram0"/></actuator>'),
     "one joint by a tendon": ('<motor joint="ram0"/>', '<motor tendon="one"/>'),
     "free by six joints": ("<freejoint/>", f'{SLIDES}<joint type="ball"/>'),
+    "a cover that is welded": (EQUAL, f'<weld body1="cover2" body2="tube2"/>{EQUAL}'),
     "inactive coupling": (EQUAL, f'<joint joint1="ram0" joint2="ram3" active="false"/>{EQUAL}'),
     "gripper": (
         "<freejoint/>",

@@ -177,8 +177,12 @@ def _check_open(linkage: Linkage, groups: Groups, bodies: frozenset[str]) -> Non
 def _walk(
     linkage: Linkage, groups: Groups, bodies: frozenset[str], platform: str
 ) -> tuple[Step, ...]:
-    """Return the joints of a chain in order; bodies that lead nowhere are left out."""
-    edges = [x for x in linkage.links if x.freedoms and bodies & _ends(x, groups)]
+    """Return the joints of a chain in order.
+
+    Bodies that lead nowhere are left out, and joints that a weld of their bodies holds.
+    """
+    moving = [x for x in linkage.links if x.freedoms and len(_ends(x, groups)) > 1]
+    edges = [x for x in moving if bodies & _ends(x, groups)]
     edges = _without_dead_ends(edges, groups, bodies)
     at, steps = groups.first[linkage.base], list[Step]()
     while at != platform:
