@@ -136,6 +136,7 @@ def _each(drives: Drives | None, what: str, n: int) -> Array:
     value = None if drives is None else getattr(drives, what)
     if value is None:
         return np.full(n, np.inf)
-    if value.size not in (1, n):
-        raise InvalidInput(expected(f"drives.{what}", f"1 or {n} numbers", f"{value.size}"))
+    if value.shape not in ((), (n,)):
+        wanted = f"one number, or shape ({n},)"
+        raise InvalidInput(expected(f"drives.{what}", wanted, f"shape {value.shape}"))
     return np.broadcast_to(value, n)

@@ -21,6 +21,11 @@ PURPOSES = ("visual", "collision")
 ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 
 
+def title_of(design: Design) -> str:
+    """Return the name of a model: that of the design, else of its mechanism."""
+    return design.name if design.name.strip() else design.mechanism.name
+
+
 def joined(numbers: ArrayLike) -> str:
     """Return numbers as text that reads back bit by bit, with spaces between them."""
     return " ".join(repr(float(x)) for x in np.asarray(numbers).ravel())

@@ -22,6 +22,7 @@ from gsp.bridges.markup import (
     moments,
     numbers_of,
     roll_pitch_yaw,
+    title_of,
     written,
 )
 from gsp.bridges.motions import Chain, Motion
@@ -114,9 +115,7 @@ def to_sdf(
     bodies = capsules(design, chains, solids)
     limits = joint_limits(design, drives, metres)
     root = ElementTree.Element("sdf", {"version": VERSION, "xmlns:drake": NAMESPACE})
-    model = ElementTree.SubElement(
-        root, "model", name=design.name or design.mechanism.name, canonical_link="base"
-    )
+    model = ElementTree.SubElement(root, "model", name=title_of(design), canonical_link="base")
     _add_link(model, "base", Pose(np.zeros(3)), bodies["base"], metres)
     _add_joint(model, "base_to_world", "fixed", "world", "base")
     _add_link(model, "platform", pose, fixed_to_platform(chains, bodies), metres)
@@ -195,6 +194,8 @@ def _add_joint(
     axis = add(joint, "axis")
     add(axis, "xyz").text = joined(motion.axis)
     limits = add(axis, "limit")
+    if not motion.active:  # else Drake takes it for an actuator
+        limit = limit._replace(effort=0.0)
     for what, number in zip(("lower", "upper", "effort", "velocity"), limit, strict=True):
         if np.isfinite(number):
             add(limits, what).text = repr(number)

@@ -31,6 +31,7 @@ from gsp.bridges.markup import (
     moments,
     numbers_of,
     roll_pitch_yaw,
+    title_of,
     written,
 )
 from gsp.bridges.motions import Chain, Motion, X, Z
@@ -139,7 +140,7 @@ def to_urdf(
     metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
     limits = joint_limits(design, drives, metres)
-    name = {"name": design.name or design.mechanism.name}
+    name = {"name": title_of(design)}
     root = ElementTree.Element("robot", name | {"xmlns:drake": NAMESPACE})
     _add_link(root, "base", bodies["base"], metres)
     _add_link(root, "platform", bodies["platform"], metres)
@@ -152,6 +153,7 @@ def to_urdf(
     if not floating:
         place = metric(chains[0].head.inverse(), metres)
         _add_joint(root, held, "fixed", ends.pop(chains[0]), "platform", place)
+    _add_transmissions(root, chains)
     loops = [loop_of(chain, end, metres, design.rms_radius) for chain, end in ends.items()]
     ignore_own_contacts(root)
     disable_contacts_in_mujoco(root)
@@ -247,6 +249,18 @@ def _add_joint(
     elif np.isfinite([limit.effort, limit.speed]).any():
         written_limits = dict(zip(names[2:], map(repr, numbers[2:]), strict=True))
         ElementTree.SubElement(joint, "limit", written_limits)
+
+
+def _add_transmissions(root: Node, chains: Sequence[Chain]) -> None:
+    """State which joints are driven, as Drake and ROS read it."""
+    add = ElementTree.SubElement
+    for motion in (motion for chain in chains for motion in chain.motions if motion.active):
+        transmission = add(root, "transmission", name=f"{motion.name}_transmission")
+        add(transmission, "type").text = "transmission_interface/SimpleTransmission"
+        joint = add(transmission, "joint", name=motion.name)
+        add(joint, "hardwareInterface").text = "hardware_interface/EffortJointInterface"
+        actuator = add(transmission, "actuator", name=f"{motion.name}_actuator")
+        add(actuator, "mechanicalReduction").text = "1"
 
 
 def _add_origin(node: Node, place: Pose) -> None:

@@ -245,7 +245,7 @@ def _mass(root, link):
 def test_cranks_reach_from_the_axis_to_the_tip_and_rods_to_the_anchor():
     """At each pose of a film; rails hold their carriages and cranks at all of them."""
     for design in (FIVE, DESIGNS["cranks"], PUBLISHED["lane-modified-paradex"]):
-        poses, unit = driven.near_home(design, 3), METRES_PER_UNIT[design.unit]
+        poses, unit = driven.near_home(design, 3), 1.0 / design.rms_radius
         scene = Scene(design, poses, None)
         close = 1e-9 * design.rms_radius * unit
         for frame in range(poses.size):

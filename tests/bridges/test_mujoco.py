@@ -10,7 +10,7 @@ from gsp.bridges import Drives, Solids, agreement, mujoco_rates, simulate, to_mj
 from gsp.bridges.mujoco.mjcf import LARGEST_REACH
 from gsp.bridges.mujoco.simulation import compiled
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
-from gsp.errors import InvalidInput, MissingParameter, MissingSoftware
+from gsp.errors import FailedComputation, InvalidInput, MissingParameter, MissingSoftware
 from gsp.model.units import METRES_PER_UNIT
 from tests import campaign
 
@@ -22,6 +22,7 @@ TWO = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 # The constraints of MuJoCo are springs: under gravity the loops of mechanisms of about 2 m open
 # by 6e-8 to 4e-6 m or rad. That moves the platform by as much times the condition number.
 SOFTNESS = 5e-6
+LIFT = gsp.hexapod(2.0, np.deg2rad(20.0), 1.0, np.deg2rad(30.0), 1.5, unit="m")
 
 
 def good_posture(name, seed=0):
@@ -303,3 +304,54 @@ def test_rates_of_nearly_parallel_lines_are_right_or_refused():
         found = agreement(design, pose, "mujoco")
         assert max(found.actuators, found.passive) < 1e-6
     assert 0 < refused < 8
+
+
+@pytest.mark.parametrize("frequency", [300.0, 5000.0])
+def test_fast_servos_reach_their_targets(frequency):
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    aim = design.at(design.home).joints + 5.0
+    still = np.zeros(3)
+    found = simulate(design, design.home, aim, 0.15, gravity=still, servo_frequency=frequency)
+    np.testing.assert_allclose(found.joints, aim, atol=0.2 * 300.0 / frequency)
+
+
+def test_a_motion_that_mujoco_loses_is_an_error(monkeypatch):
+    """MuJoCo starts again from the pose, so that its state looks as if nothing had happened."""
+    monkeypatch.setattr("gsp.bridges.mujoco.mjcf.TIMESTEP", 0.02)
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    aim = design.at(design.home).joints + 5.0
+    with pytest.raises(FailedComputation, match="became unstable before"):
+        simulate(design, design.home, aim, 4.0)
+
+
+def test_nothing_beyond_the_strokes_is_simulated():
+    joints = LIFT.at(LIFT.home).joints
+    design = LIFT.replace(strokes=np.stack((joints - 0.01, joints + 0.1), axis=1))
+    with pytest.raises(InvalidInput, match=r"joints: expected d1 within its stroke, .* to "):
+        simulate(design, design.home, joints + 0.2)
+    with pytest.raises(InvalidInput, match="pose: expected d1 within its stroke"):
+        simulate(design, design.home.moved([0, 0, 0.5, 0, 0, 0]))
+
+
+def test_cranks_take_the_shorter_way_round():
+    """The crank of docs/drives.md, from 2.75 across π to -3.09."""
+    ring = np.deg2rad([[-8, 8, 112, 128, 232, 248], [-52, 52, 68, 172, 188, 292]])
+    base, platform = (
+        radius * np.stack((np.cos(a), np.sin(a), 0.0 * a), axis=1)
+        for radius, a in zip((2.0, 1.0), ring, strict=True)
+    )
+    axes = np.cross([0.0, 0.0, 1.0], base) / 2.0
+    design = gsp.Design(
+        [gsp.Crank(arm=0.3 * point, rod=2.0) for point in base],
+        base_points=base,
+        base_directions=axes,
+        platform_points=platform,
+        home=gsp.Pose([0.0, 0.0, 1.5]),
+    )
+    up = gsp.Pose([0.0, 0.0, 1.78])
+    aim = design.at(up).joints
+    assert (design.at(design.home).joints > 2.0).all()
+    assert (aim < -2.0).all()
+    found = simulate(design, design.home, aim, 0.3, gravity=np.zeros(3))
+    np.testing.assert_allclose(found.pose.position, up.position, atol=1e-3)
+    np.testing.assert_allclose(found.joints, aim, atol=1e-3)

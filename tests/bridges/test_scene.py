@@ -41,7 +41,7 @@ def rod(scene, body, geom=0):
 def test_the_links_of_every_leg_meet_at_every_pose():
     """Both are on the line between the feet, from one foot on, and together cover it."""
     for design, poses in moved_far():
-        scene, metres = Scene(design, poses, None), Solids().unit(design)
+        scene, metres = Scene(design, poses, None), 1.0 / design.rms_radius
         close = 1e-9 * metres * design.rms_radius
         thin = 2.0 * 0.02 * design.rms_radius * metres
         for frame in range(poses.size):

@@ -110,8 +110,10 @@ def test_greatest_forces_and_speeds_are_limits():
         own = machine.joints[machine.getJointId(name)].idx_v  # in mm: N = 1e3 kg mm/s²
         assert machine.effortLimit[own] == pytest.approx((100.0 + i) * (1e6 if angular else 1e3))
         assert machine.velocityLimit[own] == pytest.approx(0.5 * (1.0 if angular else 1e3))
-    with pytest.raises(InvalidInput, match=r"drives\.efforts: expected 1 or 6 numbers"):
+    with pytest.raises(InvalidInput, match=r"efforts: expected one number, or shape \(6,\)"):
         to_urdf(TWO, TWO.home, drives=Drives(efforts=[1.0, 2.0]))
+    with pytest.raises(InvalidInput, match=r"received shape \(1,\)"):
+        to_urdf(TWO, TWO.home, drives=Drives(efforts=[1.0]))
 
 
 def test_what_is_beside_reads_back():

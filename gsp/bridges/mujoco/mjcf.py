@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.bridges.drives import Drives, JointLimit, joint_limits
 from gsp.bridges.linkage import linkage
-from gsp.bridges.markup import Node, joined
+from gsp.bridges.markup import Node, joined, title_of
 from gsp.bridges.motions import Chain, Motion, Z, displacements
 from gsp.bridges.mujoco.elements import (
     LARGEST_PICTURE,
@@ -86,7 +86,8 @@ def to_mjcf(
         In base axes.
     servo_frequency : float [rad/s]
         Stiffness of a servo is the moving mass (for angles, the mass times `design.rms_radius`²)
-        times this squared; they are critically damped.
+        times this squared; they are critically damped. The step is 1 ms, above 300 rad/s as much
+        shorter as the servos are faster.
 
     Returns
     -------
@@ -123,8 +124,8 @@ def to_mjcf(
     frequency = arguments.number("servo_frequency", frequency)  # its square is finite
     mass = sum(c.mass for name, parts in bodies.items() if name not in FIXED for c in parts)
     inertia = mass * (unit * design.rms_radius) ** 2
-    root = ElementTree.Element("mujoco", model=design.name or design.mechanism.name)
-    _settings(root, down, mass, inertia)
+    root = ElementTree.Element("mujoco", model=title_of(design))
+    _settings(root, down, mass, inertia, TIMESTEP * min(1.0, SERVO_FREQUENCY / frequency))
     world = ElementTree.SubElement(root, "worldbody")
     _scenery(root, world, design, pose, unit)
     add_geoms(world, bodies["base"], "base", unit)
@@ -168,10 +169,10 @@ def _check_reach(chains: Iterable[Chain], size: float) -> None:
             raise InvalidInput(expected(chain.name, wanted, got))
 
 
-def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
+def _settings(root: Node, gravity: Array, mass: float, inertia: float, step: float) -> None:
     add = ElementTree.SubElement
     add(root, "compiler", angle="radian", autolimits="true")
-    add(root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity=joined(gravity))
+    add(root, "option", timestep=repr(step), integrator="implicitfast", gravity=joined(gravity))
     visual = add(root, "visual")
     high, wide = map(str, LARGEST_PICTURE)
     add(visual, "global", offwidth=wide, offheight=high)
@@ -182,7 +183,7 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     sky.attrib |= {"width": "8", "height": "48"}
     defaults = add(root, "default")
     add(defaults, "geom", type="capsule", contype="0", conaffinity="0")
-    add(defaults, "equality", solref=joined([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
+    add(defaults, "equality", solref=joined([2 * step, 1.0]), solimp="0.9999 0.9999 0.001")
     for name, size in (("slide", mass), ("turn", inertia)):
         kind = add(defaults, "default", {"class": name})
         add(kind, "joint", damping=repr(DAMPING_RATE * size), armature=repr(ARMATURE_SHARE * size))
@@ -228,7 +229,8 @@ def _add_platform(
 ) -> None:
     body = ElementTree.SubElement(world, "body", {"name": "platform"} | frame_of(pose, unit))
     ElementTree.SubElement(body, "freejoint", name="platform")
-    ElementTree.SubElement(body, "site", name="platform", size=repr(1e-3 * unit))
+    small = 0.05 * bodies["platform"][0].radius * unit
+    ElementTree.SubElement(body, "site", name="platform", size=repr(small))
     add_geoms(body, bodies["platform"], "platform", unit)
     for chain in chains:  # the balls of spherical joints are fixed to the platform
         if not chain.leg.platform_line:

@@ -15,6 +15,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.model.units import METRES_PER_UNIT
 
 if TYPE_CHECKING:
     import mujoco
@@ -46,19 +47,19 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
         See `to_mjcf`.
     """
     mujoco = load_mujoco()
-    chains = linkage(design, pose)
+    chains, solids = linkage(design, pose), _solids(design)
     check_drives(design, pose)
     try:
-        model, data = load(design, pose)
+        model, data = load(design, pose, solids)
     except InvalidInput as error:
         if not str(error).startswith("solids"):
             raise
         wanted = "one whose links are heavy enough for MuJoCo (design.scaled makes it larger)"
-        size = f"a size of {Solids().unit(design) * design.rms_radius:.3g} m"
+        size = f"a size of {solids.unit(design) * design.rms_radius:.3g} m"
         raise InvalidInput(expected("design", wanted, size)) from error
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     mujoco.mj_forward(model, data)
-    metres = Solids().unit(design)
+    metres = solids.unit(design)
     rates = _loop_rates(model, data, pose, metres)
     speeds = np.empty((model.nu, 6))
     for column in range(6):
@@ -67,9 +68,14 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
         speeds[:, column] = data.actuator_velocity
     return Rates(
         largest_gap(data) / min(metres * design.rms_radius, 1.0),
-        speeds / metres_of(design, None)[:, None],
+        speeds / metres_of(design, solids)[:, None],
         tuple(_leg(model, data, rates, chain, metres) for chain in chains),
     )
+
+
+def _solids(design: Design) -> Solids:
+    """Return solids in metres, where rates need a unit: one that is not known counts as a metre."""
+    return Solids(metres=METRES_PER_UNIT.get(design.unit, 1.0))
 
 
 def _loop_rates(model: mujoco.MjModel, data: mujoco.MjData, pose: Pose, metres: float) -> Array:

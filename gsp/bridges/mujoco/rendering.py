@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -177,7 +178,9 @@ def _renderer(mujoco: Any, model: Any, shape: list[int]) -> Any:
     global _failed
     if _failed is None:
         try:
-            return mujoco.Renderer(model, *shape)
+            with warnings.catch_warnings():  # of GLFW, where there is no display
+                warnings.simplefilter("ignore")
+                return mujoco.Renderer(model, *shape)
         except Exception as error:  # each way of having no OpenGL raises another kind
             _failed = f"{type(error).__name__}: {error}"
     wanted = "egl or osmesa, set before mujoco is imported, and its library"

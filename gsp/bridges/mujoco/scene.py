@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gsp.bridges.linkage import linkage
-from gsp.bridges.motions import spans
+from gsp.bridges.motions import Chain, spans
 from gsp.bridges.mujoco.elements import SHORTEST_CAPSULE, configuration, wxyz
 from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.mujoco.simulation import compiled, load_mujoco
 from gsp.bridges.shapes import Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
+from gsp.errors import InvalidInput, UndefinedPosture
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, perpendicular, unit
 from gsp.model.design import Design
@@ -44,15 +45,25 @@ class Scene:
     """
 
     def __init__(self, design: Design, poses: Pose, solids: Solids | None) -> None:
+        # A picture has no unit and no masses: the model has a size at which MuJoCo is accurate.
+        solids = Solids(radius=check_solids(solids).radius, metres=1.0 / design.rms_radius)
         self._design, self._poses, self._solids = design, poses, solids
-        self._unit = check_solids(solids).unit(design)
-        self._legs = [linkage(design, poses[i]) for i in range(poses.size)]
+        self._unit = solids.unit(design)
+        self._legs = [self._linkage(i) for i in range(poses.size)]
         self._spans = spans(self._legs)
         self.model = compiled(to_mjcf(design, poses[0], solids))
         self.data = load_mujoco().MjData(self.model)
         for name, parts in self._bodies(0).items():
             if name == "base" or name.endswith("_rail"):
                 self._shape("world" if name == "base" else name, parts)
+
+    def _linkage(self, frame: int) -> tuple[Chain, ...]:
+        try:
+            return linkage(self._design, self._poses[frame])
+        except UndefinedPosture as error:
+            if self._poses.size == 1:
+                raise
+            raise InvalidInput(f"pose {frame + 1} of {self._poses.size}: {error}") from error
 
     def show(self, frame: int) -> None:
         """Put the model at a pose."""

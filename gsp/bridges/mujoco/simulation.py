@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,11 +14,19 @@ from gsp import arguments
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive, optional
-from gsp.errors import InvalidInput, apart, brief, expected
+from gsp.errors import (
+    FailedComputation,
+    GspError,
+    InvalidInput,
+    apart,
+    brief,
+    expected,
+)
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
+from gsp.model.design.checks import open_strokes
 from gsp.progress import Progress, meter
 from gsp.statics.weights import GRAVITY
 
@@ -24,6 +35,8 @@ if TYPE_CHECKING:
 
 # Most steps of a simulation, and steps after which their number is reported.
 MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
+# How far a joint may be beyond its stroke, as a share of the size or in rad.
+STROKE_TOLERANCE = 1e-9
 
 
 @read_only_tuple
@@ -69,7 +82,7 @@ def simulate(
         At which all legs are defined; the simulation starts there.
     joints : (n,) array_like or None [unit of the design, rad]
         Targets of the servos; default those of the pose, which are held. They move from the start
-        to these in the first half of the time.
+        to these in the first half of the time, cranks without strokes the shorter way round.
     duration : float [s]
         At most that of 1e8 steps of the model, which take hours.
     solids : Solids or None
@@ -88,6 +101,10 @@ def simulate(
     ------
     MissingSoftware
         If MuJoCo is not installed.
+    FailedComputation
+        If the motion becomes unstable in MuJoCo, as where targets cannot be reached.
+    InvalidInput
+        If the pose or `joints` is beyond the strokes of the design.
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
 
@@ -103,31 +120,87 @@ def simulate(
     model, data = load(design, pose, solids, gravity, servo_frequency)
     scale = metres_of(design, solids)
     change = np.zeros(model.nu)
+    _check_within(design, "pose", design.at(pose).joints)
     if joints is not None:
         given = check_array("joints", joints, (model.nu,))
         if given.ndim != 1:
             raise InvalidInput(expected("joints", f"shape ({model.nu},)", f"shape {given.shape}"))
-        change = given * scale - data.actuator_length
+        _check_within(design, "joints", given)
+        change = _changes(design, given * scale, data.actuator_length)
     longest = MOST_SIMULATED * model.opt.timestep
     if seconds > longest:
         got, most = apart(seconds, longest)
         raise InvalidInput(expected("duration", f"at most {most} s", got))
     steps = int(np.ceil(seconds / model.opt.timestep))
-    with meter(progress, "simulate") as report:
+    with meter(progress, "simulate") as report, silent(mujoco):
         for step in range(steps):
             data.ctrl[:] = change * min(1.0, 2.0 * step / steps)
             mujoco.mj_step(model, data)
             if not (step + 1) % STEPS_PER_REPORT or step + 1 == steps:
+                _check_stable(data, (step + 1) * model.opt.timestep)
                 report(step + 1, steps)
     mujoco.mj_forward(model, data)
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos, np.roll(placed.xquat, -1))
     return Simulation(
         Pose(found.position / check_solids(solids).unit(design), found.rotation),
-        np.array(data.actuator_length) / scale,
+        _in_one_turn(design, np.array(data.actuator_length)) / scale,
         largest_gap(data),
         float(np.abs(data.qvel).max()),
     )
+
+
+def _check_within(design: Design, what: str, joints: Array) -> None:
+    """Raise InvalidInput for joint values beyond strokes, where limits would move the model."""
+    margin = STROKE_TOLERANCE * np.where(design.angular, 1.0, design.rms_radius)
+    low, high = open_strokes(design.strokes, len(design.joint_names)).T
+    for row in np.flatnonzero((joints < low - margin) | (joints > high + margin)):
+        name = design.joint_names[row]
+        wanted = f"{name} within its stroke, {low[row]:g} to {high[row]:g}"
+        raise InvalidInput(expected(what, wanted, f"{joints[row]:g}"))
+
+
+def _changes(design: Design, targets: Array, start: Array) -> Array:
+    """Return how far actuators go; a crank without a stroke takes the shorter way round."""
+    change = targets - start
+    turning = _cranks(design)
+    turning &= ~np.isfinite(open_strokes(design.strokes, len(turning))).all(axis=1)
+    nearest = change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
+    return np.where(turning, nearest, change)
+
+
+def _in_one_turn(design: Design, joints: Array) -> Array:
+    """Return joint values with angles of cranks in (−π, π], as the design has them."""
+    angle = np.pi - np.mod(np.pi - joints, 2.0 * np.pi)
+    return np.where(_cranks(design), angle, joints)
+
+
+def _cranks(design: Design) -> Mask:
+    return np.array([row.constraint.driven for row in design.rows]) & design.angular
+
+
+def _check_stable(data: mujoco.MjData, time: float) -> None:
+    """Raise FailedComputation after MuJoCo has found numbers that are not finite, or huge ones.
+
+    It then starts again from the pose of the model, as if nothing had happened.
+    """
+    kinds = load_mujoco().mjtWarning
+    bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
+    if any(data.warning[int(kind)].number for kind in bad):
+        wanted = "a motion that MuJoCo can compute (targets that the legs can reach, finite forces)"
+        got = f"one that became unstable before {time:.3g} s"
+        raise FailedComputation(expected("simulate", wanted, got))
+
+
+@contextmanager
+def silent(program: Any) -> Iterator[None]:
+    """Leave out warnings of MuJoCo, which it prints and writes to a file where it runs."""
+    before = program.get_mju_user_warning()
+    program.set_mju_user_warning(lambda _: None)
+    try:
+        yield
+    finally:
+        program.set_mju_user_warning(before)
 
 
 def load(
@@ -173,7 +246,18 @@ def loop_rows(data: mujoco.MjData) -> Mask:
 
 
 def load_mujoco() -> Any:
-    """Import MuJoCo, or raise MissingSoftware."""
-    with optional("mujoco", "a simulation", "mujoco"):
-        import mujoco
+    """Import MuJoCo, or raise MissingSoftware, or GspError if the environment is wrong for it.
+
+    It looks for the OpenGL that the environment names when it is imported, and raises errors of
+    several kinds.
+    """
+    try:
+        with optional("mujoco", "a simulation", "mujoco"):
+            import mujoco
+    except GspError:
+        raise
+    except Exception as error:
+        wanted = "egl, osmesa or glfw, and its library, or nothing"
+        got = f"{os.environ.get('MUJOCO_GL', '')!r} ({type(error).__name__}: {brief(str(error))})"
+        raise GspError(expected("MUJOCO_GL", wanted, got)) from error
     return mujoco

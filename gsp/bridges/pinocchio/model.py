@@ -9,6 +9,7 @@ import numpy as np
 
 from gsp.bridges.drives import Drives, joint_limits
 from gsp.bridges.linkage import linkage
+from gsp.bridges.markup import title_of
 from gsp.bridges.motions import Chain, Motion
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
@@ -112,7 +113,7 @@ def machine_of(design: Design, pose: Pose, chains: Sequence[Chain]) -> Pinocchio
     """
     pin = import_pinocchio()
     model = pin.Model()
-    model.name = design.name or design.mechanism.name
+    model.name = title_of(design)
     platform = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "platform")
     model.addJointFrame(platform)
     ends = [_add_chain(model, chain) for chain in chains]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gsp.arguments import LARGEST_NUMBER
-from gsp.bridges.mujoco.simulation import load_mujoco
+from gsp.bridges.mujoco.simulation import load_mujoco, silent
 from gsp.bridges.reading.linkages import Freedom, Link, Linkage
 from gsp.bridges.reading.mujoco_constraints import actuators, equalities, loops, name_of
 from gsp.bridges.reading.xml_lines import Node, XmlFile
@@ -57,7 +56,7 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
         raise MalformedFile(expected(f"{path}, root element", wanted, f"<{cut(root.tag)}>"))
     _check_numbers(path, set())
     try:
-        with _silent(program):
+        with silent(program):
             model = program.MjModel.from_xml_path(str(path))
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())[:LONGEST_REASON]
@@ -84,17 +83,6 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
         links=links,
         couplings=[*couplings, *equalities(program, model)],
     )
-
-
-@contextmanager
-def _silent(program: Any) -> Iterator[None]:
-    """Leave out warnings about masses, which MuJoCo prints and writes to a file where it runs."""
-    before = program.get_mju_user_warning()
-    program.set_mju_user_warning(lambda _: None)
-    try:
-        yield
-    finally:
-        program.set_mju_user_warning(before)
 
 
 def _check_numbers(path: Path, seen: set[Path]) -> None:

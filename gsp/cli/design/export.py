@@ -25,6 +25,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say, warn
+from gsp.cli.outputs.postures import warn_of
 from gsp.errors import InvalidInput
 from gsp.files.writing import check_writable
 from gsp.model.mechanism import Mechanism
@@ -147,5 +148,6 @@ def export(
     files = write(
         design, pose, to.value, target, solids, drives, floating=not on_leg, overwrite=force
     )
+    warn_of(design.at(pose))
     for path in files:
         say(str(path))
