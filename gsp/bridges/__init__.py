@@ -1,15 +1,15 @@
 """Models of other software, written and read, and comparison: Pinocchio, MuJoCo, URDF, SDF."""
 
 from gsp.bridges.agreements import Agreement, agreement
-from gsp.bridges.drives import Drives
 from gsp.bridges.exports import export
+from gsp.bridges.formats.sdf import Sdf, to_sdf
+from gsp.bridges.formats.urdf import Urdf, to_urdf
+from gsp.bridges.links.drives import Drives
+from gsp.bridges.links.solids import Solids, masses
 from gsp.bridges.mujoco import Simulation, mujoco_rates, render, render_motion, simulate, to_mjcf
 from gsp.bridges.pinocchio import PinocchioModel, pinocchio_rates, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates
 from gsp.bridges.reading import read_model
-from gsp.bridges.sdf import Sdf, to_sdf
-from gsp.bridges.solids import Solids, masses
-from gsp.bridges.urdf import Urdf, to_urdf
 
 __all__ = [
     "Agreement",

@@ -10,12 +10,12 @@ from pathlib import Path
 from types import MappingProxyType
 
 from gsp import arguments
-from gsp.bridges.drives import Drives
+from gsp.bridges.formats.sdf import to_sdf
+from gsp.bridges.formats.urdf import to_urdf
+from gsp.bridges.links.drives import Drives
+from gsp.bridges.links.solids import Solids
 from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.pinocchio.model import to_pinocchio
-from gsp.bridges.sdf import to_sdf
-from gsp.bridges.solids import Solids
-from gsp.bridges.urdf import to_urdf
 from gsp.checks import check_text
 from gsp.errors import InvalidInput, UnknownName, expected
 from gsp.files.names import file_stem

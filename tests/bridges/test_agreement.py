@@ -11,9 +11,9 @@ import pytest
 import gsp
 from gsp.bridges import agreement as agreement_of
 from gsp.bridges import to_pinocchio
+from gsp.bridges.links.solids import Solids
 from gsp.bridges.pinocchio.rates import closure_residual, loop_rates
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, Proof, prove, random_design
-from gsp.bridges.solids import Solids
 from gsp.errors import UnknownName
 from gsp.model.posture import Posture
 

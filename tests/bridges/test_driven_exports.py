@@ -20,7 +20,7 @@ from gsp.bridges import (
     to_sdf,
     to_urdf,
 )
-from gsp.bridges.linkage import linkage
+from gsp.bridges.links.linkage import linkage
 from gsp.bridges.mujoco.elements import configuration
 from gsp.bridges.mujoco.scene import Scene
 from gsp.bridges.proof import DIFFERENCE_TOLERANCE
@@ -174,8 +174,8 @@ def test_drives_move_the_platform_to_the_pose_of_forward():
 @pytest.mark.parametrize("design", SOME, ids=lambda design: design.mechanism.name)
 def test_programs_agree_on_the_acceleration_of_a_falling_platform(design, monkeypatch):
     """The links between the turns of a joint are so light that they do not count."""
-    monkeypatch.setattr("gsp.bridges.stock.SPLIT_SHARE", 1e-7)
-    monkeypatch.setattr("gsp.bridges.stock.LEAST_SPLIT", 0.0)
+    monkeypatch.setattr("gsp.bridges.links.stock.SPLIT_SHARE", 1e-7)
+    monkeypatch.setattr("gsp.bridges.links.stock.LEAST_SPLIT", 0.0)
     pose = design.home
     model, loops, q = to_pinocchio(design, pose)
     ours = part(model, closed_acceleration(model, loops, q), "platform")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.bridges.linkage import linkage
+from gsp.bridges.links.linkage import linkage
 from gsp.bridges.proof import BOX, random_design
 from gsp.errors import InvalidInput, UndefinedPosture
 from gsp.geometry.pose import Pose

@@ -16,7 +16,7 @@ import pytest
 
 import gsp
 from gsp.bridges import Solids, masses, simulate, to_mjcf, to_pinocchio, to_sdf, to_urdf
-from gsp.bridges.contacts import NAMESPACE
+from gsp.bridges.formats.contacts import NAMESPACE
 from gsp.bridges.proof import BOX, random_design
 from gsp.model.units import METRES_PER_UNIT
 from tests import campaign, driven

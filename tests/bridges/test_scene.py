@@ -5,7 +5,7 @@ import pytest
 
 import gsp
 from gsp.bridges import Solids, to_mjcf
-from gsp.bridges.linkage import linkage
+from gsp.bridges.links.linkage import linkage
 from gsp.bridges.mujoco.camera import FILLED, fit
 from gsp.bridges.mujoco.scene import Scene
 from gsp.bridges.proof import BOX, random_design

@@ -7,7 +7,7 @@ import pytest
 
 import gsp
 from gsp.bridges import Solids, to_mjcf, to_pinocchio, to_urdf
-from gsp.bridges.shapes import Body, Capsule
+from gsp.bridges.links.shapes import Body, Capsule
 
 TWO = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 SOLIDS = Solids(radius=9.0)

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 import gsp
-from gsp.bridges.linkage import linkage
+from gsp.bridges.links.linkage import linkage
 from gsp.bridges.mujoco.elements import configuration
 from gsp.bridges.proof import BOX, random_design
 from gsp.errors import InvalidInput

@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gsp.bridges.markup import Node, joined
-from gsp.bridges.motions import Chain, Motion
-from gsp.bridges.shapes import Capsule
+from gsp.bridges.formats.markup import Node, joined
+from gsp.bridges.links.motions import Chain, Motion
+from gsp.bridges.links.shapes import Capsule
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 

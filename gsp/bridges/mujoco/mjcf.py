@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.bridges.drives import Drives, JointLimit, joint_limits
-from gsp.bridges.linkage import linkage
-from gsp.bridges.markup import Node, joined, title_of
-from gsp.bridges.motions import Chain, Motion, Z, displacements
+from gsp.bridges.formats.markup import Node, joined, title_of
+from gsp.bridges.links.drives import Drives, JointLimit, joint_limits
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain, Motion, Z, displacements
+from gsp.bridges.links.shapes import Body, Capsule
+from gsp.bridges.links.solids import Solids, capsules, check_solids
 from gsp.bridges.mujoco.elements import (
     LARGEST_PICTURE,
     add_body,
@@ -22,8 +24,6 @@ from gsp.bridges.mujoco.elements import (
     metric,
     moved,
 )
-from gsp.bridges.shapes import Body, Capsule
-from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose

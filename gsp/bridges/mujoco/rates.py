@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.bridges.linkage import linkage
-from gsp.bridges.motions import Chain
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain
+from gsp.bridges.links.solids import Solids
 from gsp.bridges.mujoco.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
 from gsp.bridges.rates import LegRates, Rates, check_drives, slide_joints
-from gsp.bridges.solids import Solids
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.bridges.linkage import linkage
-from gsp.bridges.motions import Chain, spans
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain, spans
+from gsp.bridges.links.shapes import Capsule
+from gsp.bridges.links.solids import Solids, capsules, check_solids
 from gsp.bridges.mujoco.elements import SHORTEST_CAPSULE, configuration, wxyz
 from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.mujoco.simulation import compiled, load_mujoco
-from gsp.bridges.shapes import Capsule
-from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.errors import InvalidInput, UndefinedPosture
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, perpendicular, unit

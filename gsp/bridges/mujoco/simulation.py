@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
+from gsp.bridges.links.solids import Solids, check_solids
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
-from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive, optional
 from gsp.errors import (
     FailedComputation,

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gsp.bridges.drives import Drives, joint_limits
-from gsp.bridges.linkage import linkage
-from gsp.bridges.markup import title_of
-from gsp.bridges.motions import Chain, Motion
-from gsp.bridges.shapes import Body, Capsule
-from gsp.bridges.solids import Solids, capsules, check_solids
+from gsp.bridges.formats.markup import title_of
+from gsp.bridges.links.drives import Drives, joint_limits
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain, Motion
+from gsp.bridges.links.shapes import Body, Capsule
+from gsp.bridges.links.solids import Solids, capsules, check_solids
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from gsp.bridges.linkage import linkage
-from gsp.bridges.motions import Chain
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain
 from gsp.bridges.pinocchio.model import PinocchioModel, joint_of_link, machine_of
 from gsp.bridges.rates import LegRates, Rates, check_drives, slide_joints
 from gsp.geometry.frames.software import import_pinocchio

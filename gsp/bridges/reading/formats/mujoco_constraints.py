@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.bridges.reading.linkages import Coupling, Freedom, Link
+from gsp.bridges.reading.mechanism.linkages import Coupling, Freedom, Link
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array

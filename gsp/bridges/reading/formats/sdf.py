@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from gsp.bridges.reading.beside import Beside, read_beside
-from gsp.bridges.reading.linkages import Coupling, Link, Linkage
-from gsp.bridges.reading.sdf_frames import WORLD, Frames, Version, flag, freedoms_of
-from gsp.bridges.reading.xml_lines import Node, XmlFile
+from gsp.bridges.reading.formats.beside import Beside, read_beside
+from gsp.bridges.reading.formats.sdf_frames import WORLD, Frames, Version, flag, freedoms_of
+from gsp.bridges.reading.mechanism.linkages import Coupling, Link, Linkage
+from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import brief, cut
 from gsp.geometry.pose import Pose
 

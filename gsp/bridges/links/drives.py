@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST_NUMBER, bounded_array
-from gsp.bridges.motions import Motion
+from gsp.bridges.links.motions import Motion
 from gsp.checks import is_a
 from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.vectors import Array

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from gsp.bridges.reading.keys import Keys, read_keys
-from gsp.bridges.reading.linkages import Freedom, Link
+from gsp.bridges.reading.mechanism.linkages import Freedom, Link
+from gsp.bridges.reading.texts.keys import Keys, read_keys
 from gsp.errors import MalformedFile, brief, expected
 from gsp.geometry.pose import Pose
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from gsp.bridges.reading.linkages import Freedom
+from gsp.bridges.reading.mechanism.linkages import Freedom
 from gsp.errors import InvalidInput, brief, expected
 
 # Names of the passive and the driven joints in exported models: "leg4_slide", "d4", "theta4" …

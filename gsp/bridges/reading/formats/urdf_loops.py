@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from gsp.bridges.reading.beside import Beside
-from gsp.bridges.reading.linkages import Link
-from gsp.bridges.reading.sdf_frames import CONVERTED, MODEL, freedoms_of, pose_of
-from gsp.bridges.reading.xml_lines import Node, XmlFile
+from gsp.bridges.reading.formats.beside import Beside
+from gsp.bridges.reading.formats.sdf_frames import CONVERTED, MODEL, freedoms_of, pose_of
+from gsp.bridges.reading.mechanism.linkages import Link
+from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, expected
 from gsp.geometry.pose import Pose
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from gsp.bridges.drives import NO_STROKE
-from gsp.bridges.reading.beside import read_beside
-from gsp.bridges.reading.linkages import Coupling, Freedom, Link, Linkage
-from gsp.bridges.reading.urdf_loops import gazebo_loops, loops_beside
-from gsp.bridges.reading.xml_lines import Node, XmlFile
+from gsp.bridges.links.drives import NO_STROKE
+from gsp.bridges.reading.formats.beside import read_beside
+from gsp.bridges.reading.formats.urdf_loops import gazebo_loops, loops_beside
+from gsp.bridges.reading.mechanism.linkages import Coupling, Freedom, Link, Linkage
+from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.geometry.pose import Pose
 

@@ -15,7 +15,7 @@ from typing import cast
 
 import numpy as np
 
-from gsp.bridges.motions import Chain, Kind, Motion, X, Z
+from gsp.bridges.links.motions import Chain, Kind, Motion, X, Z
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose

@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gsp.bridges.markup import Node, joined, metric, numbers_of, roll_pitch_yaw
-from gsp.bridges.motions import Chain, X
+from gsp.bridges.formats.markup import Node, joined, metric, numbers_of, roll_pitch_yaw
+from gsp.bridges.links.motions import Chain, X
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.bridges.reading.chains import Chains, Path, chains_of
-from gsp.bridges.reading.driven import in_axes
-from gsp.bridges.reading.ends import FoundLeg, anchors_on_platform
-from gsp.bridges.reading.legs import leg_of
-from gsp.bridges.reading.linkages import Linkage
-from gsp.bridges.reading.mobility import rank
+from gsp.bridges.reading.mechanism.chains import Chains, Path, chains_of
+from gsp.bridges.reading.mechanism.driven import in_axes
+from gsp.bridges.reading.mechanism.ends import FoundLeg, anchors_on_platform
+from gsp.bridges.reading.mechanism.legs import leg_of
+from gsp.bridges.reading.mechanism.linkages import Linkage
+from gsp.bridges.reading.mechanism.mobility import rank
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import norm

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gsp.bridges.reading.actuated import check_driven
-from gsp.bridges.reading.ends import NONE, TOLERANCE, End, FoundLeg, joint_at_end
-from gsp.bridges.reading.linkages import Freedom
+from gsp.bridges.reading.mechanism.actuated import check_driven
+from gsp.bridges.reading.mechanism.ends import NONE, TOLERANCE, End, FoundLeg, joint_at_end
+from gsp.bridges.reading.mechanism.linkages import Freedom
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gsp.bridges.reading.linkages import Freedom
-from gsp.bridges.reading.xml_lines import Node, XmlFile
+from gsp.bridges.reading.mechanism.linkages import Freedom
+from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import brief
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from gsp.bridges.reading.groups import Groups, rigid_groups
-from gsp.bridges.reading.linkages import NO_SHIFT, Freedom, Link, Linkage
+from gsp.bridges.reading.mechanism.groups import Groups, rigid_groups
+from gsp.bridges.reading.mechanism.linkages import NO_SHIFT, Freedom, Link, Linkage
 from gsp.errors import InvalidInput, UnknownName, brief, cut, expected
 from gsp.geometry.pose import Pose
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gsp.bridges.reading.linkages import Freedom
+from gsp.bridges.reading.mechanism.linkages import Freedom
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm, unit

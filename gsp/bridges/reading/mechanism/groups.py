@@ -8,7 +8,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from gsp.bridges.reading.linkages import Link, Linkage
+from gsp.bridges.reading.mechanism.linkages import Link, Linkage
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gsp.bridges.reading.linkages import Freedom
+from gsp.bridges.reading.mechanism.linkages import Freedom
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from gsp.bridges.reading.json_text import DIGITS_OF_INTEGERS, integer, joined, repeated
+from gsp.bridges.reading.texts.json_text import DIGITS_OF_INTEGERS, integer, joined, repeated
 from gsp.checks import optional
 from gsp.errors import MalformedFile, brief, expected
 

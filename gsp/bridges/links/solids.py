@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from gsp import arguments
-from gsp.bridges.linkage import linkage
-from gsp.bridges.motions import Chain, Span, X, spans
-from gsp.bridges.shapes import Body, Capsule
-from gsp.bridges.stock import Stock, plate_ends
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain, Span, X, spans
+from gsp.bridges.links.shapes import Body, Capsule
+from gsp.bridges.links.stock import Stock, plate_ends
 from gsp.checks import check_positive, is_a
 from gsp.errors import InvalidInput, MissingParameter, apart, expected
 from gsp.geometry.pose import Pose

@@ -9,10 +9,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gsp.bridges.contacts import NAMESPACE, ignore_own_contacts
-from gsp.bridges.drives import UNLIMITED, Drives, JointLimit, joint_limits, limit_at_zero
-from gsp.bridges.linkage import linkage
-from gsp.bridges.markup import (
+from gsp.bridges.formats.contacts import NAMESPACE, ignore_own_contacts
+from gsp.bridges.formats.markup import (
     PURPOSES,
     Node,
     base_slides,
@@ -25,9 +23,11 @@ from gsp.bridges.markup import (
     title_of,
     written,
 )
-from gsp.bridges.motions import Chain, Motion
-from gsp.bridges.shapes import Body, Capsule
-from gsp.bridges.solids import Solids, capsules, check_solids, fixed_to_platform
+from gsp.bridges.links.drives import UNLIMITED, Drives, JointLimit, joint_limits, limit_at_zero
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain, Motion
+from gsp.bridges.links.shapes import Body, Capsule
+from gsp.bridges.links.solids import Solids, capsules, check_solids, fixed_to_platform
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design

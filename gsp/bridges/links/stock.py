@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gsp.bridges.motions import Chain, Span, X, displacements
-from gsp.bridges.shapes import Capsule
+from gsp.bridges.links.motions import Chain, Span, X, displacements
+from gsp.bridges.links.shapes import Capsule
 from gsp.geometry.vectors import Array, norm
 
 OVERLAP_SHARE = 0.6  # of the length of a leg, taken by each of its two links

@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.bridges.motions import Chain
-from gsp.bridges.shapes import Body
+from gsp.bridges.links.motions import Chain
+from gsp.bridges.links.shapes import Body
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design

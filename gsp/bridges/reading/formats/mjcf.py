@@ -10,9 +10,9 @@ import numpy as np
 
 from gsp.arguments import LARGEST_NUMBER
 from gsp.bridges.mujoco.simulation import load_mujoco, silent
-from gsp.bridges.reading.linkages import Freedom, Link, Linkage
-from gsp.bridges.reading.mujoco_constraints import actuators, equalities, loops, name_of
-from gsp.bridges.reading.xml_lines import Node, XmlFile
+from gsp.bridges.reading.formats.mujoco_constraints import actuators, equalities, loops, name_of
+from gsp.bridges.reading.mechanism.linkages import Freedom, Link, Linkage
+from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose

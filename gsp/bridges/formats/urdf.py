@@ -10,18 +10,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from gsp import arguments
-from gsp.bridges.contacts import NAMESPACE, disable_contacts_in_mujoco, ignore_own_contacts
-from gsp.bridges.drives import (
-    NO_STROKE,
-    UNLIMITED,
-    Drives,
-    JointLimit,
-    joint_limits,
-    limit_at_zero,
-)
-from gsp.bridges.linkage import linkage
-from gsp.bridges.loops import Loop, add_ball_constraints, add_gazebo_joints, loop_of
-from gsp.bridges.markup import (
+from gsp.bridges.formats.contacts import NAMESPACE, disable_contacts_in_mujoco, ignore_own_contacts
+from gsp.bridges.formats.loops import Loop, add_ball_constraints, add_gazebo_joints, loop_of
+from gsp.bridges.formats.markup import (
     PURPOSES,
     Node,
     base_slides,
@@ -34,9 +25,18 @@ from gsp.bridges.markup import (
     title_of,
     written,
 )
-from gsp.bridges.motions import Chain, Motion, X, Z
-from gsp.bridges.shapes import Body, Capsule
-from gsp.bridges.solids import Solids, capsules, check_solids
+from gsp.bridges.links.drives import (
+    NO_STROKE,
+    UNLIMITED,
+    Drives,
+    JointLimit,
+    joint_limits,
+    limit_at_zero,
+)
+from gsp.bridges.links.linkage import linkage
+from gsp.bridges.links.motions import Chain, Motion, X, Z
+from gsp.bridges.links.shapes import Body, Capsule
+from gsp.bridges.links.solids import Solids, capsules, check_solids
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross

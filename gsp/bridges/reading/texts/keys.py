@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from gsp import arguments
-from gsp.bridges.reading.json_text import from_json, joined
-from gsp.bridges.reading.yaml_text import from_yaml
+from gsp.bridges.reading.texts.json_text import from_json, joined
+from gsp.bridges.reading.texts.yaml_text import from_yaml
 from gsp.errors import LETTERS_PER_TEXT, MalformedFile, brief, cut, expected
 from gsp.files.writing import read_text
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from gsp.bridges.markup import Node
+from gsp.bridges.formats.markup import Node
 
 # Declares the prefix of Drake's tags; without it a strict reader of XML refuses them.
 NAMESPACE = "http://drake.mit.edu"

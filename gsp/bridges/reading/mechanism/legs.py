@@ -6,12 +6,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gsp.bridges.reading.actuated import check_driven, driven_of_two
-from gsp.bridges.reading.chains import Path
-from gsp.bridges.reading.driven import driven_leg, is_driven
-from gsp.bridges.reading.ends import End, FoundLeg, check_near, check_small, joint_at_end, sine
-from gsp.bridges.reading.linkages import Freedom
-from gsp.bridges.reading.mobility import rank
+from gsp.bridges.reading.mechanism.actuated import check_driven, driven_of_two
+from gsp.bridges.reading.mechanism.chains import Path
+from gsp.bridges.reading.mechanism.driven import driven_leg, is_driven
+from gsp.bridges.reading.mechanism.ends import (
+    End,
+    FoundLeg,
+    check_near,
+    check_small,
+    joint_at_end,
+    sine,
+)
+from gsp.bridges.reading.mechanism.linkages import Freedom
+from gsp.bridges.reading.mechanism.mobility import rank
 from gsp.errors import LETTERS_PER_TEXT, InvalidInput, brief, cut, expected
 from gsp.geometry.vectors import Array, cross, norm
 

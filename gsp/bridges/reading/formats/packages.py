@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from gsp import arguments
-from gsp.bridges.reading.keys import Keys, read_keys
+from gsp.bridges.reading.texts.keys import Keys, read_keys
 from gsp.errors import MalformedFile, brief, expected
 from gsp.families.circular import LARGEST_PAIR_ANGLE_DEG, hexapod
 from gsp.geometry.pose import Pose

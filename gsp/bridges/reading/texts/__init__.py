@@ -1,0 +1,1 @@
+"""XML, JSON and YAML whose mistakes are named by line and key."""
