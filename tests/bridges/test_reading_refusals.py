@@ -110,7 +110,11 @@ def test_loops_that_are_stated_twice_are_refused(moved, tmp_path):
     again["position"][0] += moved
     content["loops"].append(again)
     beside.write_text(json.dumps(content))
-    with pytest.raises(MalformedFile, match=r"loop 'leg3': expected bodies .* once, received a se"):
+    with pytest.raises(MalformedFile, match="expected a name of its own, received 'leg3'"):
+        read_model(path)
+    again["name"] = "leg3b"
+    beside.write_text(json.dumps(content))
+    with pytest.raises(MalformedFile, match="loop 'leg3b': expected bodies .* once, received a se"):
         read_model(path)
 
 
@@ -322,3 +326,51 @@ def test_joints_that_are_all_at_one_point_are_refused(tmp_path):
     text = f"{HEAD}{top}{legs}</worldbody><equality>{loops}</equality></mujoco>"
     assert_refused(tmp_path, "point.xml", text, "a joint of 1 freedoms")
     assert_refused(tmp_path, "point.xml", text.replace("hinge", "free", 1), "received 4")
+
+
+ONE_MOTOR = "".join(f'<joint name="d{i}"/>' for i in (1, 2)) + '<actuator name="m"/>'
+SAME_MOTOR = '<transmission><joint name="d{}"/><actuator name="d1_actuator"/></transmission>'
+CONTROL = """<ros2_control><joint name="d2"><param name="mimic">d1</param></joint>
+    </ros2_control>"""
+PLUGIN = """<gazebo><plugin filename="libmimic.so"><joint>d1</joint><mimicJoint>d2</mimicJoint>
+    </plugin></gazebo>"""
+HELD = """<drake:ball_constraint name="held"><drake:ball_constraint_body_A name="base"/>
+    <drake:ball_constraint_body_B name="platform"/></drake:ball_constraint>"""
+
+
+@pytest.mark.parametrize(
+    ("element", "message"),
+    [
+        (f"<transmission>{ONE_MOTOR}</transmission>", "<actuator>: expected one for each of 2 joi"),
+        (SAME_MOTOR.format(2), "<actuator>: expected one of no other transmission"),
+        (CONTROL, "a mimic of 'd1'"),
+        (PLUGIN, "a plugin of a mimic of 'd2'"),
+        (HELD, "expected no constraints but loops"),
+        ('<loop_joint name="x" type="fixed"/>', "expected no constraints but loops"),
+        ('<coupling name="x"/>', "expected no constraints but loops"),
+    ],
+)
+def test_elements_of_urdf_that_tie_joints_or_links_are_refused(element, message, tmp_path):
+    path = exported("urdf", tmp_path)
+    text = edited(path.read_text(), ("</robot>", element + "</robot>"))
+    assert_refused(tmp_path, path.name, text, message)
+
+
+def test_constraints_that_flags_of_mujoco_disable_are_as_if_absent(tmp_path):
+    path = exported("mjcf", tmp_path)
+    for flag in ("equality", "constraint"):
+        option = f'<option><flag {flag}="disable"/></option><compiler'
+        text = edited(path.read_text(), ("<compiler", option))
+        assert_refused(tmp_path, "open.xml", text, "at least 3 chains of joints .*, received none")
+
+
+def test_quaternions_of_urdf_are_read(tmp_path):
+    path = exported("urdf", tmp_path)
+    turned = LIFT.home.moved([0, 0, 0, 0, 0, np.pi / 6])
+    given = f'quat_xyzw="{" ".join(map(repr, turned.quaternion.tolist()))}"'
+    text = path.read_text()
+    start = text.index('name="base_to_platform"')
+    text = text[:start] + re.sub(r'rpy="[^"]*"', given, text[start:], count=1)
+    path.write_text(text)
+    np.testing.assert_allclose(read_model(path).home.rotation, turned.rotation, atol=1e-12)
+    assert_refused(tmp_path, path.name, text.replace(given, f'{given} rpy="0 0 0"'), "and no rpy")

@@ -72,6 +72,9 @@ def read_beside(path: Path) -> Beside:
         for key in KEYS[1:]
     ]
     closings = tuple(map(_closing, keys["loops"].items(1))) if "loops" in keys else ()
+    for number, closing in enumerate(closings):
+        if closing.name in {other.name for other in closings[:number]}:
+            keys["loops"][number]["name"].fail("a name of its own")
     return Beside(
         path=path,
         loops=closings,

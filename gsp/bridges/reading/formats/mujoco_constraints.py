@@ -89,9 +89,9 @@ def equalities(program: Any, model: mujoco.MjModel) -> Iterator[Coupling]:
     connect, weld, joint = (
         int(getattr(program.mjtEq, f"mjEQ_{x}")) for x in ("CONNECT", "WELD", "JOINT")
     )
-    for i in range(model.neq):
+    for i in _active(program, model):
         kind = model.eq_type[i]
-        if not model.eq_active0[i] or kind in (connect, weld):
+        if kind in (connect, weld):
             continue
         where = f"<equality>, {brief(name_of(program, model, 'EQUALITY', i))}"
         if kind != joint:
@@ -105,6 +105,14 @@ def equalities(program: Any, model: mujoco.MjModel) -> Iterator[Coupling]:
         yield Coupling(where, names, held if len(names) == 1 else coupled)
 
 
+def _active(program: Any, model: mujoco.MjModel) -> list[int]:
+    """Return the constraints that act: none where flags of the model disable all of them."""
+    flags = program.mjtDisableBit
+    if model.opt.disableflags & (int(flags.mjDSBL_EQUALITY) | int(flags.mjDSBL_CONSTRAINT)):
+        return []
+    return [i for i in range(model.neq) if model.eq_active0[i]]
+
+
 def loops(
     program: Any, model: mujoco.MjModel, data: mujoco.MjData, names: list[str]
 ) -> Iterator[Link]:
@@ -113,8 +121,8 @@ def loops(
     A weld without torque leaves all turns free, as connect does.
     """
     connect, weld = (int(getattr(program.mjtEq, f"mjEQ_{x}")) for x in ("CONNECT", "WELD"))
-    for i in range(model.neq):
-        if model.eq_type[i] not in (connect, weld) or not model.eq_active0[i]:
+    for i in _active(program, model):
+        if model.eq_type[i] not in (connect, weld):
             continue
         name = name_of(program, model, "EQUALITY", i)
         bodies, points = _ends(program, model, data, i)

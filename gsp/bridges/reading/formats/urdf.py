@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.geometry.pose import Pose
 
+# Elements at the root that tie links or joints: of Drake and of URDF+.
+TIES = re.compile(r"constraint$|coupling|loop_joint|mimic")
 KINDS = {
     "fixed": (),
     "revolute": ("turn",),
@@ -51,6 +54,7 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     if not loops:
         wanted = "loops beside it in NAME.urdf.loops.json, or joints in <gazebo>"
         raise MalformedFile(expected(str(path), wanted, "none: the legs are open"))
+    _check_ties(file, loops)
     floating = {x.get("name", "") for x in nodes if x.get("type") == "floating"}
     driven = _driven(file, {x.name for x in joints})
     links = [_stated(x, driven) for x in joints if x.name not in floating] + loops
@@ -68,6 +72,15 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
 def _driven(file: XmlFile, names: set[str]) -> set[str]:
     """Return the joints for which the file has a transmission or an interface of commands."""
     found = file.root.findall("transmission/joint")
+    motors: set[str] = set()
+    for node in file.root.iterfind("transmission"):
+        joints, own = node.findall("joint"), node.findall("actuator")
+        if len(joints) > max(1, len(own)):
+            file.fail(node, "<actuator>", f"one for each of {len(joints)} joints", f"{len(own)}")
+        for motor in {x.get("name", "") for x in own} - {""}:
+            if motor in motors:
+                file.fail(node, "<actuator>", "one of no other transmission", brief(motor))
+            motors.add(motor)
     for node in file.root.iterfind("ros2_control/joint"):
         found += [node] if node.find("command_interface") is not None else []
     for node in found:
@@ -90,6 +103,25 @@ def _couplings(file: XmlFile) -> Iterator[Coupling]:
         if mimic is not None:
             names = (file.attribute(node, "name"), file.attribute(mimic, "joint"))
             yield Coupling(file.where(node), names, f"<mimic> of {brief(names[1])}")
+    for node in file.root.iterfind("ros2_control/joint"):
+        for param in node.iterfind("param[@name='mimic']"):
+            names = (file.attribute(node, "name"), (param.text or "").strip())
+            yield Coupling(file.where(node), names, f"a mimic of {brief(names[1])}")
+    for node in file.root.iterfind("gazebo/plugin"):
+        mimic = node.find("mimicJoint")
+        if mimic is not None:
+            names = (file.text(node, "joint"), (mimic.text or "").strip())
+            yield Coupling(file.where(node), names, f"a plugin of a mimic of {brief(names[1])}")
+
+
+def _check_ties(file: XmlFile, loops: Sequence[Link]) -> None:
+    """Raise MalformedFile for elements that tie links or joints, but for tags of known loops."""
+    known = {frozenset((loop.parent, loop.child)) for loop in loops}
+    for node in file.root:
+        tag = node.tag.rpartition("}")[2] if isinstance(node.tag, str) else ""
+        ends = frozenset(x.get("name", "") for x in node if "_body_" in str(x.tag))
+        if TIES.search(tag) and ends not in known:
+            file.fail(node, "", "no constraints but loops, in the file beside it or <gazebo>", tag)
 
 
 def _tree(file: XmlFile, names: list[str]) -> tuple[dict[str, Pose], list[Link]]:
@@ -164,7 +196,15 @@ def _origin(file: XmlFile, node: Node) -> Pose:
     origin = file.only(node, "origin")
     if origin is None:
         return Pose(np.zeros(3))
-    position, angles = (
-        file.numbers(node, f"<origin> {key}", origin.get(key, "0 0 0"), 3) for key in ("xyz", "rpy")
-    )
-    return Pose.from_rpy(position, angles)
+    position = file.numbers(node, "<origin> xyz", origin.get("xyz", "0 0 0"), 3)
+    turn = origin.get("quat_xyzw")
+    if turn is None:
+        return Pose.from_rpy(
+            position, file.numbers(node, "<origin> rpy", origin.get("rpy", "0 0 0"), 3)
+        )
+    quaternion = file.numbers(node, "<origin> quat_xyzw", turn, 4)
+    if not quaternion.any() or origin.get("rpy") is not None:
+        file.fail(
+            node, "<origin> quat_xyzw", "a quaternion other than zero, and no rpy", brief(turn)
+        )
+    return Pose.from_quaternion(position, quaternion)
