@@ -41,6 +41,9 @@ LEAST_REACH = 1e-8
 TURN = 2.0 * np.pi
 # Legs whose assembly modes are found in milliseconds.
 QUICK_MODES = "D1^6"
+# Random steps where nothing else is feasible: their sizes, how many of each, and from how many the
+# descents start.
+SAMPLED_SIZES, RANDOM_STEPS, NEAREST_SAMPLES = (0.05, 0.15, 0.4, 1.0), 500, 3
 # How far a search on exact lengths may move an end, and the steps of Newton's method for it.
 LONGEST_CORRECTION, CORRECTION_STEPS = 1e-3, 3
 
@@ -81,7 +84,7 @@ def nearest(
     From each feasible end a descent goes on, all steps of which are feasible; where a search ends
     at no feasible pose, the descent begins at its start or at a feasible pose that is looked for.
     If none is found, assembly modes of joint values within the strokes are tried, for six D1 legs
-    or drives.
+    or drives, and random poses.
     The nearest end is tested to second order and made exact by Newton's method. That there is no
     nearer pose is not proven. Limits hold to 1e-9 of the size.
 
@@ -154,16 +157,18 @@ def nearest(
     if all(end is None for end in ends):
         ends = rough.from_modes(number, generator)
     near = sorted((end for end in ends if end is not None), key=norm)
+    found = len(near)
     if near:
         near.insert(0, rough.probed(near[0]))
     best = next((end for end in map(exact.polished, near) if exact.allowed(end)), None)
     if best is None:
+        near = exact.from_samples(generator)
+        best, found = min(near, key=norm, default=None), len(near)
+    if best is None:
         raise EmptyWorkspace(
             f"nearest feasible pose: expected one near {pose!r}, received none ({number} searches)"
         )
-    return Nearest(
-        pose=small.pose_to(exact.placed(best)), distance=float(norm(best)), starts=len(near) - 1
-    )
+    return Nearest(pose=small.pose_to(exact.placed(best)), distance=float(norm(best)), starts=found)
 
 
 class _Search:
@@ -282,6 +287,13 @@ class _Search:
             if any(end is not None for end in ends):
                 return ends
         return []
+
+    def from_samples(self, rng: np.random.Generator) -> list[Array]:
+        """Return the ends of descents from the nearest feasible ones of random steps."""
+        sizes = np.repeat(SAMPLED_SIZES, RANDOM_STEPS)
+        steps = sizes[:, None] * rng.normal(size=(len(sizes), 6))
+        found = sorted((step for step in map(_shortest, steps) if self.allowed(step)), key=norm)
+        return [descended(self.functions, step) for step in found[:NEAREST_SAMPLES]]
 
     def probed(self, end: Array) -> Array:
         """Return a step that is a local minimum, as far as probes around it show."""

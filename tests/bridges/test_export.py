@@ -1,13 +1,14 @@
 """Models on disk: complete, never over something else, and an error of one line when impossible."""
 
 import json
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
 import gsp
-from gsp.bridges import export, to_pinocchio, to_urdf
+from gsp.bridges import export, to_mjcf, to_pinocchio, to_sdf, to_urdf
 from gsp.bridges.exports import default_file
 from gsp.cli import main
 from gsp.errors import InvalidInput, UndefinedPosture, UnknownName, UnwritableOutput
@@ -157,3 +158,16 @@ def test_the_platform_of_a_urdf_is_on_leg_1_where_asked(tmp_path, monkeypatch, c
     with pytest.raises(InvalidInput, match="floating: expected True for mjcf, received False"):
         export(TWO, TWO.home, "mjcf", tmp_path / "two.xml", floating=False)
     assert not (tmp_path / "two.xml").exists()
+
+
+@pytest.mark.parametrize("name", ["world", "__root__", "a::b", "x\ufffey", " "])
+def test_names_that_formats_refuse_are_changed(name):
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, unit="m", name=name)
+    for text in (
+        to_mjcf(design, design.home),
+        to_urdf(design, design.home).text,
+        to_sdf(design, design.home).text,
+    ):
+        root = ElementTree.fromstring(text)
+        title = root.get("model") or root.get("name") or root.find("model").get("name")
+        assert title in ("model world", "model __root__", "a_b", "xy", "D1^6")

@@ -355,3 +355,23 @@ def test_cranks_take_the_shorter_way_round():
     found = simulate(design, design.home, aim, 0.3, gravity=np.zeros(3))
     np.testing.assert_allclose(found.pose.position, up.position, atol=1e-3)
     np.testing.assert_allclose(found.joints, aim, atol=1e-3)
+
+
+@pytest.mark.parametrize("kinds", ["D1^2 D2^2 D3^2", "D1 D2 D3 D4 A1^2"])
+def test_the_origin_of_the_platform_does_not_change_how_the_model_gives_way(kinds):
+    """Under gravity, at the centre of the platform anchors."""
+    rng = np.random.default_rng(8)
+    design = random_design(gsp.catalogue.mechanism(kinds), rng).replace(unit="m")
+    design = design.replace(home=BOX.sample(1, rng=rng)[0])
+    centre, sags = design.platform_points.mean(axis=0), []
+    for shift in (np.zeros(3), np.array([50.0, -50.0, 50.0])):
+        moved = design.with_origin(centre + shift)
+        end = simulate(moved, moved.home, duration=0.3).pose
+        home = moved.home
+        sags.append(end.position - home.position - (end.rotation - home.rotation) @ shift)
+    np.testing.assert_allclose(sags[1], sags[0], atol=0.02 * np.abs(sags[0]).max())
+
+
+def test_targets_that_mujoco_takes_for_zero_are_an_error():
+    with pytest.raises(FailedComputation, match="became unstable"):
+        simulate(LIFT, LIFT.home, np.full(6, 1e15), duration=0.1)

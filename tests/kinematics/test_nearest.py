@@ -6,6 +6,7 @@ import pytest
 import gsp
 from gsp.errors import EmptyWorkspace
 from gsp.geometry import Pose
+from gsp.kinematics import nearest_pose
 from tests.metamorphic import random_design
 
 LEGS = ("D1^6", "D1 D2 D3 D4^3", "D2^2 D3^2 D4 A1", "D2^5 A1")
@@ -128,3 +129,15 @@ def test_thresholds_are_those_of_the_design_wherever_its_origins_are(name):
     found = gsp.nearest(design, home, limits, starts=2)
     assert value(found.pose) == pytest.approx(better, rel=1e-6)
     assert found.distance > 0.0
+
+
+def test_random_poses_are_tried_where_no_search_ends_at_an_allowed_one(monkeypatch):
+    """Searches for thresholds on indices that are not smooth may all end beside the limit."""
+    design = gsp.hexapod(2.0, 0.25, 1.0, 0.4, 1.5).replace(home=None)
+    away, limits = Pose([0.3, 0.2, 1.9]), gsp.Limits(strokes=[[1.6, 2.3]] * 6)
+    assert not gsp.feasible(design, away, limits).ok
+    for name in ("minimum_from", "restored_from"):
+        monkeypatch.setattr(nearest_pose._Search, name, lambda *_: None)
+    found = gsp.nearest(design, away, limits)
+    assert gsp.feasible(design, found.pose, gsp.Limits(strokes=[[1.6 - 1e-8, 2.3 + 1e-8]] * 6)).ok
+    assert 1 <= found.starts <= nearest_pose.NEAREST_SAMPLES

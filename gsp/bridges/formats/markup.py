@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterable
 from xml.etree import ElementTree
@@ -21,9 +22,17 @@ PURPOSES = ("visual", "collision")
 ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 
 
+# What XML cannot contain, and names that SDF keeps for itself.
+NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+RESERVED = re.compile("world|__.*__")
+
+
 def title_of(design: Design) -> str:
-    """Return the name of a model: that of the design, else of its mechanism."""
-    return design.name if design.name.strip() else design.mechanism.name
+    """Return the name of a model that its format allows: of the design, else its mechanism."""
+    name = NO_XML.sub("", design.name).replace("::", "_")
+    if RESERVED.fullmatch(name.strip()):
+        name = f"model {name.strip()}"
+    return name if name.strip() else design.mechanism.name
 
 
 def joined(numbers: ArrayLike) -> str:

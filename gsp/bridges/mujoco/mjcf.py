@@ -244,7 +244,9 @@ def _close(root: Node, chains: Iterable[Chain], unit: float) -> None:
     for chain in chains:
         ends = {"name": chain.name, "body2": "platform"}
         if chain.leg.platform_line:
-            ends |= {"body1": f"{chain.name}_rail"}
+            # Without an anchor the weld is at the platform origin, wherever that is.
+            anchor = joined(chain.head.position * unit)
+            ends |= {"body1": f"{chain.name}_rail", "anchor": anchor}
             ElementTree.SubElement(equality, "weld", ends)
         else:
             anchor = " ".join(f"{x:.17g}" for x in chain.platform[0].offset * unit)

@@ -185,7 +185,7 @@ def _check_stable(data: mujoco.MjData, time: float) -> None:
     It then starts again from the pose of the model, as if nothing had happened.
     """
     kinds = load_mujoco().mjtWarning
-    bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
+    bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC, kinds.mjWARN_BADCTRL)
     if any(data.warning[int(kind)].number for kind in bad):
         wanted = "a motion that MuJoCo can compute (targets that the legs can reach, finite forces)"
         got = f"one that became unstable before {time:.3g} s"
