@@ -23,7 +23,7 @@ _MEANINGS = {
     "singularity_distance": "a proven lower bound of the distance to the nearest singular pose",
     "greatest_force": (
         "the greatest force of an actuator over all wrenches sqrt(|f|² + |m|²/L²) = 1 about the "
-        "platform origin"
+        "platform origin; torques of A1 actuators are divided by L"
     ),
     "local_conditioning": (
         "1/CDN_CL; its mean in tables is the global conditioning index GCI, in which a singular "

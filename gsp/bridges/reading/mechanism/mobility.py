@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from gsp.bridges.reading.mechanism.linkages import Freedom
+from gsp.geometry.frames.screws import exp3
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm
 
@@ -69,5 +69,5 @@ def _screws(
 
 
 def _turn(axis: Array, point: Array, angle: float) -> Pose:
-    rotation = Rotation.from_rotvec(angle * axis).as_matrix()
+    rotation = exp3(angle * axis)
     return Pose(point - rotation @ point, rotation)
