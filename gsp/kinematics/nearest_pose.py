@@ -182,6 +182,8 @@ class _Search:
         self.bounds = bounded_quantities(small.design, small.limits, crossed=True, driven=True)
         self.design, self.target = small.design, target
         self.centre = small.design.platform_points.mean(axis=0)
+        # Of a step, where the design has kept its own unit.
+        self.length = small.design.rms_radius if small.size == 1.0 else 1.0
         drives = [row.constraint.driven for row in self.design.rows]
         self.drives = np.flatnonzero(drives)
         self.cranks = np.flatnonzero(self.design.angular & drives)
@@ -198,7 +200,7 @@ class _Search:
 
     def placed(self, x: Array) -> Pose:
         turn = exp3(x[3:]) @ self.target.rotation
-        middle = self.target.position + self.target.rotation @ self.centre + x[:3]
+        middle = self.target.position + self.target.rotation @ self.centre + self.length * x[:3]
         return Pose(middle - turn @ self.centre, turn)
 
     def home(self) -> Array | None:
@@ -211,7 +213,7 @@ class _Search:
     def step_to(self, pose: Pose) -> Array:
         middles = [p.position + p.rotation @ self.centre for p in (pose, self.target)]
         turn = log3(pose.rotation @ self.target.rotation.T)
-        return np.concatenate((middles[0] - middles[1], turn))
+        return np.concatenate(((middles[0] - middles[1]) / self.length, turn))
 
     def slacks(self, x: Array, least_reach: float = LEAST_REACH) -> Array:
         """Return how far the quantities are inside of their bounds; −1e9 if undefined.
@@ -238,7 +240,7 @@ class _Search:
         rows[self.drives] = np.where(np.isfinite(own), own, 0.0)
         rows = np.concatenate((rows, reaches(self.design, at.position, at.rotation)[1]))
         turns = about_point(rows, at.rotation @ self.centre)[:, 3:] @ exp3_rates(x[3:])
-        rates = np.nan_to_num(np.hstack((rows[:, :3], turns)))
+        rates = np.nan_to_num(np.hstack((self.length * rows[:, :3], turns)))
         inner, reach = rates[:n], rates[n:]
         return np.concatenate((inner[self.finite[0]], -inner[self.finite[1]], reach))
 

@@ -327,10 +327,19 @@ def test_a_motion_that_mujoco_loses_is_an_error(monkeypatch):
 def test_nothing_beyond_the_strokes_is_simulated():
     joints = LIFT.at(LIFT.home).joints
     design = LIFT.replace(strokes=np.stack((joints - 0.01, joints + 0.1), axis=1))
-    with pytest.raises(InvalidInput, match=r"joints: expected d1 within its stroke, .* to "):
+    with pytest.raises(InvalidInput, match=r"joints: expected d1 within its stroke or range, "):
         simulate(design, design.home, joints + 0.2)
     with pytest.raises(InvalidInput, match="pose: expected d1 within its stroke"):
         simulate(design, design.home.moved([0, 0, 0.5, 0, 0, 0]))
+
+
+def test_targets_that_no_joint_can_have_are_refused():
+    joints = LIFT.at(LIFT.home).joints
+    with pytest.raises(InvalidInput, match=r"expected d1 within its stroke or range, 0 to inf"):
+        simulate(LIFT, LIFT.home, np.where(np.arange(6) == 0, -joints, joints))
+    angles = TWO.at(TWO.home).joints
+    with pytest.raises(InvalidInput, match=r"expected theta5 within .*, 0 to 3\.14159"):
+        simulate(TWO, TWO.home, np.where(np.arange(6) == 5, 4.0, angles))
 
 
 def test_cranks_take_the_shorter_way_round():

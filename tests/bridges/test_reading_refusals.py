@@ -374,3 +374,11 @@ def test_quaternions_of_urdf_are_read(tmp_path):
     path.write_text(text)
     np.testing.assert_allclose(read_model(path).home.rotation, turned.rotation, atol=1e-12)
     assert_refused(tmp_path, path.name, text.replace(given, f'{given} rpy="0 0 0"'), "and no rpy")
+
+
+def test_plugins_of_sdf_that_couple_joints_are_refused(tmp_path):
+    path = exported("sdf", tmp_path)
+    plugin = """<plugin name="m" filename="libmimic.so"><joint>d1</joint>
+        <mimicJoint>d2</mimicJoint></plugin></model>"""
+    text = edited(path.read_text(), ("</model>", plugin))
+    assert_refused(tmp_path, path.name, text, "a plugin of a mimic of 'd2'")

@@ -141,3 +141,16 @@ def test_random_poses_are_tried_where_no_search_ends_at_an_allowed_one(monkeypat
     found = gsp.nearest(design, away, limits)
     assert gsp.feasible(design, found.pose, gsp.Limits(strokes=[[1.6 - 1e-8, 2.3 + 1e-8]] * 6)).ok
     assert 1 <= found.starts <= nearest_pose.NEAREST_SAMPLES
+
+
+def test_the_distance_is_that_of_the_size_where_an_index_keeps_the_unit():
+    """A threshold on CDN, whose unit is mixed, for a design of 0.1 m."""
+    design = gsp.hexapod(0.2, 0.25, 0.1, 0.4, 0.15)
+    away = design.home.moved([0.02, -0.01, 0.03, 0.1, 0.05, -0.1])
+    value = float(gsp.evaluate(design, away, ["CDN"]).iloc[0, 0])
+    found = gsp.nearest(design, away, gsp.Limits(indices=[f"CDN <= {0.99 * value!r}"]), starts=2)
+    centre = design.platform_points.mean(axis=0)
+    ends = [pose.position + pose.rotation @ centre for pose in (found.pose, away)]
+    step = (ends[0] - ends[1]) / design.rms_radius
+    turn = gsp.geometry.log3(found.pose.rotation @ away.rotation.T)
+    assert found.distance == pytest.approx(np.hypot(*map(np.linalg.norm, (step, turn))), rel=1e-9)

@@ -151,12 +151,16 @@ def simulate(
 
 
 def _check_within(design: Design, what: str, joints: Array) -> None:
-    """Raise InvalidInput for joint values beyond strokes, where limits would move the model."""
+    """Raise InvalidInput for joint values beyond strokes, or such as no joint can have."""
     margin = STROKE_TOLERANCE * np.where(design.angular, 1.0, design.rms_radius)
     low, high = open_strokes(design.strokes, len(design.joint_names)).T
+    # Distances are not negative, and angles between lines are at most π.
+    angles = design.angular & ~_cranks(design)
+    low = np.where(angles | ~np.asarray(design.signed), np.maximum(low, 0.0), low)
+    high = np.where(angles, np.minimum(high, np.pi), high)
     for row in np.flatnonzero((joints < low - margin) | (joints > high + margin)):
         name = design.joint_names[row]
-        wanted = f"{name} within its stroke, {low[row]:g} to {high[row]:g}"
+        wanted = f"{name} within its stroke or range, {low[row]:g} to {high[row]:g}"
         raise InvalidInput(expected(what, wanted, f"{joints[row]:g}"))
 
 
