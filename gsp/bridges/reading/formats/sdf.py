@@ -109,7 +109,7 @@ def _couplings(file: XmlFile, model: Node) -> Iterator[Coupling]:
             got = f"<mimic> of {brief(names[1])}"
             yield Coupling(file.where(node), names, got)
     for node in model.iterfind("plugin"):
-        mimic = node.find("mimicJoint")
-        if mimic is not None:
-            names = (file.text(node, "joint"), (mimic.text or "").strip())
+        tied = node.find("mimicJoint")
+        if tied is not None:
+            names = (file.text(node, "joint"), (tied.text or "").strip())
             yield Coupling(file.where(node), names, f"a plugin of a mimic of {brief(names[1])}")
