@@ -104,7 +104,8 @@ def simulate(
     FailedComputation
         If the motion becomes unstable in MuJoCo, as where targets cannot be reached.
     InvalidInput
-        If the pose or `joints` is beyond the strokes of the design.
+        If the pose or `joints` is beyond the strokes of the design, or a target is negative for a
+        distance, or outside [0, π] for an angle between lines.
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -108,7 +108,12 @@ def _couplings(file: XmlFile, model: Node) -> Iterator[Coupling]:
             names = (file.attribute(node, "name"), file.attribute(mimic, "joint"))
             got = f"<mimic> of {brief(names[1])}"
             yield Coupling(file.where(node), names, got)
-    for node in model.iterfind("plugin"):
+    yield from plugin_couplings(file, model.iterfind("plugin"))
+
+
+def plugin_couplings(file: XmlFile, plugins: Iterable[Node]) -> Iterator[Coupling]:
+    """Yield the joints that plugins of Gazebo couple, in SDF and in URDF."""
+    for node in plugins:
         tied = node.find("mimicJoint")
         if tied is not None:
             names = (file.text(node, "joint"), (tied.text or "").strip())

@@ -11,6 +11,7 @@ import numpy as np
 
 from gsp.bridges.links.drives import NO_STROKE
 from gsp.bridges.reading.formats.beside import read_beside
+from gsp.bridges.reading.formats.sdf import plugin_couplings
 from gsp.bridges.reading.formats.urdf_loops import gazebo_loops, loops_beside
 from gsp.bridges.reading.mechanism.linkages import Coupling, Freedom, Link, Linkage
 from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
@@ -107,11 +108,7 @@ def _couplings(file: XmlFile) -> Iterator[Coupling]:
         for param in node.iterfind("param[@name='mimic']"):
             names = (file.attribute(node, "name"), (param.text or "").strip())
             yield Coupling(file.where(node), names, f"a mimic of {brief(names[1])}")
-    for node in file.root.iterfind("gazebo/plugin"):
-        mimic = node.find("mimicJoint")
-        if mimic is not None:
-            names = (file.text(node, "joint"), (mimic.text or "").strip())
-            yield Coupling(file.where(node), names, f"a plugin of a mimic of {brief(names[1])}")
+    yield from plugin_couplings(file, file.root.iterfind("gazebo/plugin"))
 
 
 def _check_ties(file: XmlFile, loops: Sequence[Link]) -> None:
