@@ -102,7 +102,8 @@ def simulate(
     MissingSoftware
         If MuJoCo is not installed.
     FailedComputation
-        If the motion becomes unstable in MuJoCo, as where targets cannot be reached.
+        If the motion becomes unstable in MuJoCo. Targets that the legs cannot reach together need
+        not do that: they may end in a state whose loops are open, as `gap` states.
     InvalidInput
         If the pose or `joints` is beyond the strokes of the design, or a target is negative for a
         distance, or outside [0, π] for an angle between lines.
@@ -192,7 +193,7 @@ def _check_stable(data: mujoco.MjData, time: float) -> None:
     kinds = load_mujoco().mjtWarning
     bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC, kinds.mjWARN_BADCTRL)
     if any(data.warning[int(kind)].number for kind in bad):
-        wanted = "a motion that MuJoCo can compute (targets that the legs can reach, finite forces)"
+        wanted = "a motion that MuJoCo can compute (targets within reach, finite forces)"
         got = f"one that became unstable before {time:.3g} s"
         raise FailedComputation(expected("simulate", wanted, got))
 
