@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 FILM_DPI = 100
 # Megabytes of the pictures in a page, of which matplotlib drops what is beyond.
 LARGEST_PAGE = 500.0
+# Seconds per picture that a GIF can state, in hundredths of a second. Programs show pictures of
+# less than 0.02 s for 0.1 s.
+GIF_SECONDS = (0.02, 655.35)
+GIF_DIGITS = 9  # of a time per picture
 # The writer of matplotlib for each kind of file.
 WRITERS = MappingProxyType({".gif": "pillow", ".html": "html", ".mp4": "ffmpeg"})
 
@@ -68,7 +72,8 @@ class Film(ReadOnly):
         Raises
         ------
         InvalidInput
-            On another suffix.
+            On another suffix, or for a GIF whose pictures would last less than 0.02 s or more than
+            655.35 s each.
         UnwritableOutput
             If the file exists and `overwrite` is not set, or it cannot be written.
         MissingSoftware
@@ -76,8 +81,18 @@ class Film(ReadOnly):
         """
         path, overwrite = arguments.path("path", path), arguments.flag("overwrite", overwrite)
         check_film(path, overwrite=overwrite)
+        self._check_rate(Path(path).suffix.lower())
         with meter(progress, "drawing") as report:
             write_file(path, lambda temporary: self._write(temporary, report), overwrite=overwrite)
+
+    def _check_rate(self, suffix: str) -> None:
+        """Raise InvalidInput for a GIF in which pictures would last for another time."""
+        each = self.seconds / self.frames
+        low, high = GIF_SECONDS
+        if suffix == ".gif" and not low <= round(each, GIF_DIGITS) <= high:
+            ends = f"{low * self.frames:g} to {high * self.frames:g}"
+            wanted = f"{ends} for a GIF of {self.frames} pictures"
+            raise InvalidInput(expected("seconds", wanted, f"{self.seconds:g}"))
 
     def _write(self, path: Path, report: Report) -> None:
         writer = _writer(path.suffix.lower(), self.frames / self.seconds)

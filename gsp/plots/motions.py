@@ -13,7 +13,7 @@ from gsp import arguments
 from gsp.bridges import Solids, render_motion
 from gsp.checks import check_items, check_type, is_a
 from gsp.determinant import Maximum
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import INK, require_matplotlib, style
 from gsp.geometry.copies import ReadOnly, read_only
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -93,7 +93,7 @@ def animate(
     ------
     InvalidInput, UnknownIndex, MissingParameter
         As `gsp.sweep` does, for a path over a plane, or a pose that is not finite; for solids
-        without the renderer "mujoco".
+        without the renderer "mujoco", and for what only indices use if there are none.
     MissingSoftware
         Without matplotlib, or without MuJoCo where it draws.
     GspError, UndefinedPosture
@@ -112,6 +112,10 @@ def animate(
     require_matplotlib()
     if solids is not None and renderer != "mujoco":
         raise InvalidInput(expected("solids", 'renderer="mujoco", which draws them', renderer))
+    given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
+    for name, value in given.items():
+        if value is not None and not drawn:
+            raise InvalidInput(expected(name, "None for a film without indices", brief(value)))
     table = None
     if drawn:
         table = sweep(design, path, drawn, length=length, ellipsoid=ellipsoid, maximum=maximum)

@@ -4,11 +4,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import gsp
 from gsp.bridges import Drives, Solids, agreement, mujoco_rates, simulate, to_mjcf
 from gsp.bridges.mujoco.mjcf import LARGEST_REACH
-from gsp.bridges.mujoco.simulation import compiled
+from gsp.bridges.mujoco.program import compiled, gaps_of
+from gsp.bridges.mujoco.simulation import load
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
 from gsp.errors import FailedComputation, InvalidInput, MissingParameter, MissingSoftware
 from gsp.model.units import METRES_PER_UNIT
@@ -384,3 +386,35 @@ def test_the_origin_of_the_platform_does_not_change_how_the_model_gives_way(kind
 def test_targets_that_mujoco_takes_for_zero_are_an_error():
     with pytest.raises(FailedComputation, match="became unstable"):
         simulate(LIFT, LIFT.home, np.full(6, 1e15), duration=0.1)
+
+
+def test_targets_that_open_the_loops_are_refused():
+    """Legs of three times the length beside legs of a tenth; the platform is held by none of them.
+
+    A quarter more on one leg and less on another is within reach, with closed loops.
+    """
+    design = gsp.catalogue.design("cheers-hexapod")
+    joints = design.at(design.home).joints
+    far = joints * [3.0, 0.1, 3.0, 0.1, 3.0, 0.1]
+    with pytest.raises(FailedComputation, match=r"reach together, .* a loop that is open by 0\.\d"):
+        simulate(design, design.home, far, duration=1.0)
+    near = joints * [1.25, 1.0, 1.0, 0.75, 1.0, 1.0]
+    found = simulate(design, design.home, near, duration=1.0)
+    reached = design.at(found.pose).joints
+    np.testing.assert_allclose(found.joints, reached, atol=1e-3 * design.rms_radius)
+
+
+def test_the_angle_of_an_open_weld_is_that_of_the_turn():
+    """The platform is turned away from the legs that are welded to it, by hand."""
+    model, data = load(TWO, TWO.home)
+    assert gaps_of(data)[1].max(initial=0.0) < 1e-9
+    free = int(np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)[0])
+    start = model.jnt_qposadr[free] + 3
+    turn = Rotation.from_rotvec([0.0, 0.0, 0.3]) * Rotation.from_quat(
+        np.roll(data.qpos[start : start + 4], -1)
+    )
+    data.qpos[start : start + 4] = np.roll(turn.as_quat(), 1)
+    mujoco.mj_forward(model, data)
+    turns = gaps_of(data)[1].reshape(-1, 3)
+    assert turns.size
+    np.testing.assert_allclose(np.linalg.norm(turns, axis=1), 0.3, rtol=0.01)

@@ -438,7 +438,7 @@ WRONG_PLATES = [
          r"a.yaml, line 18, key points\[6\].frame\[1\]: expected a finite number"),
         ("a.yaml", POINTS.replace("  platform: [0.6, -0.3, -0.2]\n", "", 1),
          r"a.yaml, line 6, key points\[0\].platform: expected a value, received none"),
-        ("a.yaml", POINTS.replace("xyz:", "yxz:"), "line 4, key platform.position.xyz: expected"),
+        ("a.yaml", POINTS.replace("xyz:", "yxz:"), "line 4, key platform.position.yxz: expected"),
         ("a.yaml", "points: [1, 2", "a.yaml, line 1: not YAML"),
         ("a.yml", "points: [1, 2]", "line 1, key points: expected a list of at least 6"),
         ("a.json", json.dumps(PLATES).replace('"JointSpacing": 25', '"JointSpacing": "x"'),

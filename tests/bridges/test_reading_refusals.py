@@ -284,6 +284,66 @@ def test_transmissions_of_urdf_state_what_is_driven(tmp_path):
     assert_refused(tmp_path, path.name, some, "leg 1 .*: expected an actuator of the slide 'd1'")
 
 
+@pytest.mark.parametrize("other", ["leg1_base_x", ""])
+def test_transmissions_and_the_file_of_loops_state_the_same(other, tmp_path):
+    """A transmission on another joint than the file has values for, or none on one of them."""
+    path = exported("urdf", tmp_path)
+    text = path.read_text()
+    start = text.index("<transmission")
+    one = "<transmission.*?</transmission>" if not other else 'joint name="d1"'
+    new = f'joint name="{other}"' if other else ""
+    path.write_text(text[:start] + edited(text[start:], (one, new)))
+    message = r"loops\.json, key joints_at_zero: expected the joints .* with 'd1'"
+    with pytest.raises(MalformedFile, match=message):
+        read_model(path)
+
+
+def test_limits_of_urdf_may_be_infinite(tmp_path):
+    path = exported("urdf", tmp_path, LIFT.replace(strokes=[(0.1, 9.0)] * 6))
+    limit = r'(<joint name="d1".*?)lower="[^"]*" upper="[^"]*"'
+    text = path.read_text()
+    path.write_text(edited(text, (limit, r'\1lower="-inf" upper="inf"')))
+    assert np.isfinite(read_model(path).strokes).all(axis=1).tolist() == [False] + [True] * 5
+    turned = edited(text, (limit, r'\1lower="inf" upper="inf"'))
+    assert_refused(tmp_path, path.name, turned, "lower: expected a finite number, received 'inf'")
+
+
+def test_a_root_that_gazebo_fixes_to_the_world(tmp_path):
+    path = exported("urdf", tmp_path)
+    fixed = """<gazebo><joint name="f" type="fixed"><parent>world</parent><child>base</child>
+        </joint></gazebo></robot>"""
+    text = edited(path.read_text(), ("</robot>", fixed))
+    path.write_text(text)
+    assert_anchors(read_model(path))
+    wrong = text.replace(
+        "<child>base</child>\n        </joint></gazebo>", "<child>platform</child></joint></gazebo>"
+    )
+    assert wrong != text
+    assert_refused(tmp_path, path.name, wrong, "<parent>: expected the name of a link, received 'w")
+
+
+def test_joints_of_sdf_between_frames(tmp_path):
+    """A frame in a frame of the platform stands for the platform, with the joint where it is."""
+    path = exported("sdf", tmp_path)
+    text = path.read_text()
+    frames = """<frame name="top" attached_to="platform"/><frame name="tip" attached_to="top"/>"""
+    changed = re.sub("<(parent|child)>platform</", r"<\1>tip</", text).replace(
+        "</model>", frames + "</model>")  # fmt: skip
+    assert changed.count(">tip</") >= 6
+    path.write_text(changed)
+    assert_anchors(read_model(path))
+    for attached in ("tip", "nowhere"):
+        wrong = changed.replace(
+            'name="top" attached_to="platform"', f'name="top" attached_to="{attached}"'
+        )
+        assert_refused(
+            tmp_path,
+            path.name,
+            wrong,
+            "a link, joint or frame of the model|the name of a link of the model, or",
+        )
+
+
 # Legs with six joints of which two do the same.
 
 
@@ -348,6 +408,7 @@ HELD = """<drake:ball_constraint name="held"><drake:ball_constraint_body_A name=
         (HELD, "expected no constraints but loops"),
         ('<loop_joint name="x" type="fixed"/>', "expected no constraints but loops"),
         ('<coupling name="x"/>', "expected no constraints but loops"),
+        ('<loop name="x" type="fixed"/>', "expected no constraints but loops"),
     ],
 )
 def test_elements_of_urdf_that_tie_joints_or_links_are_refused(element, message, tmp_path):
@@ -356,12 +417,19 @@ def test_elements_of_urdf_that_tie_joints_or_links_are_refused(element, message,
     assert_refused(tmp_path, path.name, text, message)
 
 
-def test_constraints_that_flags_of_mujoco_disable_are_as_if_absent(tmp_path):
-    path = exported("mjcf", tmp_path)
-    for flag in ("equality", "constraint"):
+def test_flags_of_mujoco(tmp_path):
+    """Those that open the loops are refused; without limits there are no strokes."""
+    path = exported("mjcf", tmp_path, LIFT.replace(strokes=[(0.1, 9.0)] * 6))
+
+    def flagged(flag):
         option = f'<option><flag {flag}="disable"/></option><compiler'
-        text = edited(path.read_text(), ("<compiler", option))
-        assert_refused(tmp_path, "open.xml", text, "at least 3 chains of joints .*, received none")
+        return edited(path.read_text(), ("<compiler", option))
+
+    for flag in ("equality", "constraint"):
+        assert_refused(tmp_path, "open.xml", flagged(flag), f"<flag>, {flag}: expected enable")
+    assert np.isfinite(read_model(path).strokes).all()
+    (tmp_path / "free.xml").write_text(flagged("limit"))
+    assert read_model(tmp_path / "free.xml").strokes is None
 
 
 def test_quaternions_of_urdf_are_read(tmp_path):

@@ -117,6 +117,21 @@ def test_files_have_all_pictures_and_last_as_long_as_asked(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.html"]
 
 
+@pytest.mark.parametrize(("seconds", "frames"), [(1e9, 3), (0.03, 3), (0.5, 60)])
+def test_times_that_a_gif_cannot_state(seconds, frames, tmp_path):
+    path = gsp.sweeps.turn(LIFT.home, "z", np.linspace(0.0, 30.0, frames))
+    film = gsp.plots.animate(LIFT, path, frames=frames, seconds=seconds)
+    with pytest.raises(InvalidInput, match=f"seconds: expected .* for a GIF of {frames} pictures"):
+        film.save(tmp_path / "a.gif")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_only_indices_use_is_refused_without_them():
+    for name, value in (("length", 1.0), ("ellipsoid", gsp.Ellipsoid(1.0)), ("maximum", 3.0)):
+        with pytest.raises(InvalidInput, match=f"{name}: expected None for a film without ind"):
+            gsp.plots.animate(LIFT, TURN, **{name: value})
+
+
 def test_a_film_is_not_overwritten_and_needs_a_known_suffix(tmp_path, monkeypatch):
     film = gsp.plots.animate(LIFT, TURN, frames=2)
     (tmp_path / "a.gif").write_text("mine")

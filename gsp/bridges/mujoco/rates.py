@@ -9,7 +9,8 @@ import numpy as np
 from gsp.bridges.links.linkage import linkage
 from gsp.bridges.links.motions import Chain
 from gsp.bridges.links.solids import Solids
-from gsp.bridges.mujoco.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
+from gsp.bridges.mujoco.program import largest_gap, load_mujoco, loop_rows
+from gsp.bridges.mujoco.simulation import load, metres_of
 from gsp.bridges.rates import LegRates, Rates, check_drives, slide_joints
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose

@@ -12,8 +12,8 @@ from gsp import arguments
 from gsp.bridges.links.solids import Solids
 from gsp.bridges.mujoco.camera import fit
 from gsp.bridges.mujoco.elements import LARGEST_PICTURE
+from gsp.bridges.mujoco.program import load_mujoco
 from gsp.bridges.mujoco.scene import Scene
-from gsp.bridges.mujoco.simulation import load_mujoco
 from gsp.checks import check_memory, check_type
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.pose import Pose

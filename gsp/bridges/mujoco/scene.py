@@ -15,7 +15,7 @@ from gsp.bridges.links.shapes import Capsule
 from gsp.bridges.links.solids import Solids, capsules, check_solids
 from gsp.bridges.mujoco.elements import SHORTEST_CAPSULE, configuration, wxyz
 from gsp.bridges.mujoco.mjcf import to_mjcf
-from gsp.bridges.mujoco.simulation import compiled, load_mujoco
+from gsp.bridges.mujoco.program import compiled, load_mujoco
 from gsp.errors import InvalidInput, UndefinedPosture
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, perpendicular, unit

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,15 +10,9 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.bridges.links.solids import Solids, check_solids
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
-from gsp.checks import check_array, check_positive, optional
-from gsp.errors import (
-    FailedComputation,
-    GspError,
-    InvalidInput,
-    apart,
-    brief,
-    expected,
-)
+from gsp.bridges.mujoco.program import compiled, gaps_of, largest_gap, load_mujoco, silent
+from gsp.checks import check_array, check_positive
+from gsp.errors import FailedComputation, InvalidInput, apart, expected
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
@@ -37,6 +28,9 @@ if TYPE_CHECKING:
 MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
 # How far a joint may be beyond its stroke, as a share of the size or in rad.
 STROKE_TOLERANCE = 1e-9
+# Open loops, as a share of the size or in rad, above which a state is none of the design. Under
+# gravity, held or moved to what can be reached, they are open by less than 1e-4.
+OPEN_LOOP = 1e-3
 
 
 @read_only_tuple
@@ -48,11 +42,12 @@ class Simulation(NamedTuple):
     pose : Pose of shape () [unit of the design]
         Of the platform.
     joints : (n,) array [unit of the design, rad]
-        Joint variables, in the order of `design.joint_names`.
+        Joint variables, in the order of `design.joint_names`. They differ from the targets by what
+        the servos give way to the weight of the links, and by what the legs cannot reach together.
     gap : float
         Largest violation of a loop [m, or rad], by the compliance of MuJoCo's constraints.
     speed : float
-        Largest joint speed that is left [m/s, rad/s].
+        Largest speed of a joint of a leg that is left [m/s, rad/s].
     """
 
     pose: Pose
@@ -102,8 +97,9 @@ def simulate(
     MissingSoftware
         If MuJoCo is not installed.
     FailedComputation
-        If the motion becomes unstable in MuJoCo. Targets that the legs cannot reach together need
-        not do that: they may end in a state whose loops are open, as `gap` states.
+        If the motion becomes unstable in MuJoCo, or ends with loops that are open by more than
+        1e-3 of the size of the design (rms_radius) or 1e-3 rad, as with targets that the legs
+        cannot reach together.
     InvalidInput
         If the pose or `joints` is beyond the strokes of the design, or a target is negative for a
         distance, or outside [0, π] for an angle between lines.
@@ -142,14 +138,35 @@ def simulate(
                 _check_stable(data, (step + 1) * model.opt.timestep)
                 report(step + 1, steps)
     mujoco.mj_forward(model, data)
+    gap = _closed(design, data, check_solids(solids).unit(design))
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos, np.roll(placed.xquat, -1))
     return Simulation(
         Pose(found.position / check_solids(solids).unit(design), found.rotation),
         _in_one_turn(design, np.array(data.actuator_length)) / scale,
-        largest_gap(data),
-        float(np.abs(data.qvel).max()),
+        gap,
+        float(np.abs(data.qvel[_legs(model)]).max()),
     )
+
+
+def _legs(model: mujoco.MjModel) -> Mask:
+    """Return which velocities are those of joints of legs, not of the platform in space: (nv,)."""
+    free = load_mujoco().mjtJoint.mjJNT_FREE
+    return np.asarray(model.jnt_type[model.dof_jntid] != int(free))
+
+
+def _closed(design: Design, data: mujoco.MjData, metres: float) -> float:
+    """Return the largest violation of a loop, or raise FailedComputation if one is open."""
+    gaps, turns = gaps_of(data)
+    for gap, most, unit in (
+        (gaps.max(), OPEN_LOOP * design.rms_radius * metres, "m"),
+        (turns.max(initial=0.0), OPEN_LOOP, "rad"),
+    ):
+        if gap > most:
+            wanted = "targets that the legs reach together, and time to get there"
+            got = f"a loop that is open by {gap:.3g} {unit} (most: {most:.3g})"
+            raise FailedComputation(expected("simulate", wanted, got))
+    return largest_gap(data)
 
 
 def _check_within(design: Design, what: str, joints: Array) -> None:
@@ -198,17 +215,6 @@ def _check_stable(data: mujoco.MjData, time: float) -> None:
         raise FailedComputation(expected("simulate", wanted, got))
 
 
-@contextmanager
-def silent(program: Any) -> Iterator[None]:
-    """Leave out warnings of MuJoCo, which it prints and writes to a file where it runs."""
-    before = program.get_mju_user_warning()
-    program.set_mju_user_warning(lambda _: None)
-    try:
-        yield
-    finally:
-        program.set_mju_user_warning(before)
-
-
 def load(
     design: Design,
     pose: Pose,
@@ -225,45 +231,7 @@ def load(
     return model, data
 
 
-def compiled(text: str) -> mujoco.MjModel:
-    """Return the model of a text, or raise InvalidInput with MuJoCo's reason."""
-    try:
-        return load_mujoco().MjModel.from_xml_string(text)
-    except ValueError as error:
-        reason = " ".join(str(error).split())
-        wanted = "bodies and legs of which MuJoCo can make a model"
-        raise InvalidInput(expected("design, solids", wanted, brief(reason))) from error
-
-
 def metres_of(design: Design, solids: Solids | None) -> Array:
     """Return per joint the length of the design's unit in metres, 1 for angles: (n,)."""
     metres = check_solids(solids).unit(design)
     return np.where(design.angular, 1.0, metres)
-
-
-def largest_gap(data: mujoco.MjData) -> float:
-    """Return the largest violation of a loop [m, or rad]."""
-    return float(np.abs(data.efc_pos[loop_rows(data)]).max())
-
-
-def loop_rows(data: mujoco.MjData) -> Mask:
-    """Return which rows of the constraints close loops (the others are limits of joints)."""
-    return np.asarray(data.efc_type == load_mujoco().mjtConstraint.mjCNSTR_EQUALITY)
-
-
-def load_mujoco() -> Any:
-    """Import MuJoCo, or raise MissingSoftware, or GspError if the environment is wrong for it.
-
-    It looks for the OpenGL that the environment names when it is imported, and raises errors of
-    several kinds.
-    """
-    try:
-        with optional("mujoco", "a simulation", "mujoco"):
-            import mujoco
-    except GspError:
-        raise
-    except Exception as error:
-        wanted = "egl, osmesa or glfw, and its library, or nothing"
-        got = f"{os.environ.get('MUJOCO_GL', '')!r} ({type(error).__name__}: {brief(str(error))})"
-        raise GspError(expected("MUJOCO_GL", wanted, got)) from error
-    return mujoco

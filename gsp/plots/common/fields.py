@@ -156,11 +156,13 @@ def draw_constant(ax: Axes, x: Array, y: Array, values: Array) -> None:
 
 def write_constant(ax: Axes, values: Array) -> None:
     """Write the one value of an index in the middle of its axes."""
-    value = values[np.isfinite(values)][0]
+    finite = np.isfinite(values)
+    value = f"{values[finite][0]:.6g}"
+    alone = finite.sum() == 1 < values.size or np.isinf(values).any()
     ax.text(
         0.5,
         0.5,
-        f"constant: {value:.6g}",
+        f"{value} where it is finite" if alone else f"constant: {value}",
         ha="center",
         va="center",
         transform=ax.transAxes,

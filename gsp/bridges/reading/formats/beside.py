@@ -34,6 +34,14 @@ class Beside:
     passive: Mapping[str, float] = field(default_factory=dict)
     platform: str = ""
 
+    def check_driven(self, stated: Collection[str]) -> None:
+        """Raise MalformedFile if the model, which states some, has other driven joints."""
+        for name in sorted({*stated} ^ {*self.active} if stated and self.active else ()):
+            where = f"{self.path}, key {KEYS[1]}"
+            beside = "with" if name in self.active else "without"
+            wanted = "the joints that have an actuator in the model"
+            raise MalformedFile(expected(where, wanted, f"them {beside} {brief(name)}"))
+
     def check_joints(self, known: Collection[str]) -> None:
         """Raise MalformedFile if it has a value of a joint that the model does not have."""
         for key, values in zip(KEYS[1:], (self.active, self.passive), strict=True):

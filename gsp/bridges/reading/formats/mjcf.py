@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp.arguments import LARGEST_NUMBER
-from gsp.bridges.mujoco.simulation import load_mujoco, silent
+from gsp.bridges.mujoco.program import load_mujoco, silent
 from gsp.bridges.reading.formats.mujoco_constraints import actuators, equalities, loops, name_of
 from gsp.bridges.reading.mechanism.linkages import Freedom, Link, Linkage
 from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
@@ -147,7 +147,9 @@ def _freedom(
     if model.jnt_type[j] == int(program.mjtJoint.mjJNT_BALL):
         return Freedom(kind="ball", name=name, point=point, active=active)
     value = float(model.qpos0[model.jnt_qposadr[j]])
-    low, high = (model.jnt_range[j] - value) if model.jnt_limited[j] else (-np.inf, np.inf)
+    limits = not model.opt.disableflags & int(program.mjtDisableBit.mjDSBL_LIMIT)
+    limited = limits and model.jnt_limited[j]
+    low, high = (model.jnt_range[j] - value) if limited else (-np.inf, np.inf)
     return Freedom(
         kind="slide" if model.jnt_type[j] == int(program.mjtJoint.mjJNT_SLIDE) else "turn",
         name=name,

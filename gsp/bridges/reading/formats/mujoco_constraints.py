@@ -106,11 +106,22 @@ def equalities(program: Any, model: mujoco.MjModel) -> Iterator[Coupling]:
 
 
 def _active(program: Any, model: mujoco.MjModel) -> list[int]:
-    """Return the constraints that act: none where flags of the model disable all of them."""
+    """Return the constraints that act.
+
+    Raises
+    ------
+    InvalidInput
+        If there are some, but flags of the model disable all of them: the legs are open.
+    """
+    active = [i for i in range(model.neq) if model.eq_active0[i]]
     flags = program.mjtDisableBit
-    if model.opt.disableflags & (int(flags.mjDSBL_EQUALITY) | int(flags.mjDSBL_CONSTRAINT)):
-        return []
-    return [i for i in range(model.neq) if model.eq_active0[i]]
+    for name, flag in (
+        ("equality", flags.mjDSBL_EQUALITY),
+        ("constraint", flags.mjDSBL_CONSTRAINT),
+    ):
+        if active and model.opt.disableflags & int(flag):
+            raise InvalidInput(expected(f"<flag>, {name}", "enable, for the loops", "disable"))
+    return active
 
 
 def loops(

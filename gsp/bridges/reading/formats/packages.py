@@ -23,6 +23,8 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
 LEAST_LEGS = 6
+# Keys of the place of a platform in files of oKermorgant/cdpr.
+PLACE = ("xyz", "rpy")
 NAMES = ("oKermorgant/cdpr", "IRMA-LAB/cdpr_matlab", "64-B1T/basic_robotics")
 
 
@@ -87,6 +89,9 @@ def _points(keys: Keys, name: str) -> Design:
     home = None
     if "platform" in keys and "position" in keys["platform"]:
         place = keys["platform"]["position"]
+        for key in place.names():
+            if key not in PLACE:
+                place[key].fail("one of the keys " + ", ".join(PLACE))
         turn = place["rpy"].vector() if "rpy" in place else [0.0, 0.0, 0.0]
         home = Pose.from_rpy(place["xyz"].vector(), turn)
     return Design(

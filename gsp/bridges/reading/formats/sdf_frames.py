@@ -81,6 +81,8 @@ class Frames:
     def __init__(self, file: XmlFile, model: Node) -> None:
         self._file = file
         self._nodes: dict[str, Node] = {}
+        links = [link.get("name", "") for link in model.iterfind("link")]
+        self._canonical: str = model.get("canonical_link") or next(iter(links), "")
         for tag in ("link", "joint", "frame"):
             for node in model.iterfind(tag):
                 name = file.attribute(node, "name")
@@ -114,15 +116,26 @@ class Frames:
         return found
 
     def links(self, node: Node) -> list[str]:
-        """Return parent and child of a joint."""
-        ends = [self._file.text(node, tag) for tag in ("parent", "child")]
-        for tag, name in zip(("parent", "child"), ends, strict=True):
-            known = self._nodes.get(name)
-            if name != WORLD and (known is None or known.tag != "link"):
-                self._file.fail(node, f"<{tag}>", "the name of a link of the model", brief(name))
+        """Return the links of a joint, which may name frames that are attached to them."""
+        ends = [self._link(self._file.text(node, tag), node, tag) for tag in ("parent", "child")]
         if ends[0] == ends[1]:
             self._file.fail(node, "<child>", "another link than <parent>", brief(ends[1]))
         return ends
+
+    def _link(self, name: str, asked: Node, tag: str) -> str:
+        """Return the link of that name, or to which the frame of that name is attached."""
+        seen: set[str] = set()
+        while name != WORLD and (known := self._nodes.get(name)) is not None:
+            if known.tag == "link":
+                return name
+            if known.tag == "joint" or name in seen:
+                break
+            seen.add(name)
+            name = known.get("attached_to", "") or self._canonical
+        if name != WORLD:
+            wanted = "the name of a link of the model, or of a frame that is attached to one"
+            self._file.fail(asked, f"<{tag}>", wanted, brief(name))
+        return name
 
 
 # Where a frame of a name is, for an element and its key.
@@ -179,11 +192,8 @@ def _limits(file: XmlFile, axis: Node) -> tuple[float, float]:
     for tag, none in (("lower", -np.inf), ("upper", np.inf)):
         node = None if limit is None else file.only(limit, tag)
         text = "" if node is None else (node.text or "").strip()
-        if not text or text.lower().lstrip("+-") in ("inf", "infinity"):
-            ends.append(none)
-        else:
-            value = float(file.numbers(axis, f"<{tag}>", text, 1)[0])
-            ends.append(none if abs(value) >= NO_LIMIT else value)
+        value = file.limit(axis, f"<{tag}>", text, none) if text else none
+        ends.append(none if abs(value) >= NO_LIMIT else value)
     low, high = ends
     if low > high:
         file.fail(axis, "<lower>", f"at most <upper>, which is {high}", f"{low}")

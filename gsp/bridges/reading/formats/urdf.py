@@ -19,7 +19,9 @@ from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.geometry.pose import Pose
 
 # Elements at the root that tie links or joints: of Drake and of URDF+.
-TIES = re.compile(r"constraint$|coupling|loop_joint|mimic")
+TIES = re.compile(r"constraint$|coupling|loop|mimic")
+# The keys of limits of a joint, with the number of no limit.
+ENDS = (("lower", -np.inf), ("upper", np.inf))
 KINDS = {
     "fixed": (),
     "revolute": ("turn",),
@@ -58,6 +60,7 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     _check_ties(file, loops)
     floating = {x.get("name", "") for x in nodes if x.get("type") == "floating"}
     driven = _driven(file, {x.name for x in joints})
+    beside.check_driven(driven)
     links = [_stated(x, driven) for x in joints if x.name not in floating] + loops
     return Linkage(
         name=file.root.get("name", ""),
@@ -180,7 +183,7 @@ def _limits(file: XmlFile, node: Node, kind: str) -> tuple[float, float]:
     limit = file.only(node, "limit")
     if limit is None or kind == "continuous":
         return -np.inf, np.inf
-    low, high = (file.number(limit, key, 0.0) for key in ("lower", "upper"))
+    low, high = (file.limit(limit, key, limit.get(key, "0"), none) for key, none in ENDS)
     if low > high:
         file.fail(limit, "lower", f"at most upper, which is {high}", f"{low}")
     return (

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from gsp.bridges.reading.formats.beside import Beside
-from gsp.bridges.reading.formats.sdf_frames import CONVERTED, MODEL, freedoms_of, pose_of
+from gsp.bridges.reading.formats.sdf_frames import CONVERTED, MODEL, WORLD, freedoms_of, pose_of
 from gsp.bridges.reading.mechanism.linkages import Link
 from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, expected
@@ -40,12 +40,14 @@ def gazebo_loops(
 ) -> Iterator[Link]:
     """Yield joints of SDF in <gazebo>, with the frame of the child, or a pose in it or in another.
 
-    Those of loops that are beside the file are left out: they are the same, without a placement.
+    Those of loops that are beside the file are left out: they are the same, without a placement. So
+    is what fixes the root to the world.
     """
     known = {(loop.link_1, loop.link_2) for loop in beside.loops}
     # The frame of a joint of URDF is that of its child.
     frames = {joint.name: places[joint.child] for joint in joints} | dict(places)
     frames[MODEL] = Pose(np.zeros(3))
+    (root,) = places.keys() - {joint.child for joint in joints}
     nodes = file.root.findall("gazebo/joint")
     file.names(nodes)
 
@@ -56,6 +58,8 @@ def gazebo_loops(
 
     for node in nodes:
         ends = [file.text(node, tag) for tag in ("parent", "child")]
+        if WORLD not in places and node.get("type") == "fixed" and {*ends} == {WORLD, root}:
+            continue
         for tag, name in zip(("parent", "child"), ends, strict=True):
             if name not in places:
                 file.fail(node, f"<{tag}>", "the name of a link", brief(name))

@@ -137,6 +137,10 @@ class XmlFile:
         text = node.get(key)
         return default if text is None else float(self.numbers(node, key, text, 1)[0])
 
+    def limit(self, node: Node, key: str, text: str, none: float) -> float:
+        """Return a finite limit, or `none`, the infinite number of no limit."""
+        return none if number_of(text) == none else float(self.numbers(node, key, text, 1)[0])
+
     def direction(self, node: Node, key: str, text: str) -> Array:
         """Return a unit vector."""
         vector = self.numbers(node, key, text, 3)
