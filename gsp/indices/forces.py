@@ -48,6 +48,11 @@ def greatest_force(posture: Posture, length: float) -> Array:
 
     *Source: ours; forces by J⁻ᵀ as in `Posture.actuator_forces`.*
     """
+    return np.asarray(_forces(posture, length).max(axis=-1))
+
+
+def _forces(posture: Posture, length: float) -> Array:
+    """Return the greatest force of each actuator, shape (..., n): smooth where J is regular."""
     require_posture(posture)
     rows = posture.homogeneous(arguments.size("length", length))
     known = defined_matrices(rows)
@@ -58,8 +63,8 @@ def greatest_force(posture: Posture, length: float) -> Array:
     regular = known & full_rank(values)
     inverses = 1.0 / np.where(regular[..., None], values, 1.0)
     norms = np.sqrt(((left * inverses[..., None, :]) ** 2).sum(axis=-1))
-    greatest = np.where(regular, norms.max(axis=-1), np.inf)
-    return with_singular_drives(posture, np.where(known, greatest, np.nan), np.inf)
+    undefined = with_singular_drives(posture, np.where(known, np.inf, np.nan), np.inf)
+    return np.where(regular[..., None], norms, undefined[..., None])
 
 
 def _slope(slopes: Slopes, length: float) -> Array:
@@ -104,4 +109,5 @@ GREATEST_FORCE = Index(
     ),
     invariance=AT_PLATFORM_ORIGIN,
     routine=False,
+    parts=_forces,
 )

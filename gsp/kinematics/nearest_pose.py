@@ -179,7 +179,9 @@ class _Search:
     """
 
     def __init__(self, small: CentredLimits, target: Pose) -> None:
-        self.bounds = bounded_quantities(small.design, small.limits, crossed=True, driven=True)
+        self.bounds = bounded_quantities(
+            small.design, small.limits, crossed=True, driven=True, smooth=True
+        )
         self.design, self.target = small.design, target
         self.centre = small.design.platform_points.mean(axis=0)
         # Of a step, where the design has kept its own unit.

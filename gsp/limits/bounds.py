@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, MissingParameter, brief, expected
+from gsp.checks import check_type
+from gsp.errors import MissingParameter
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, cross, dot, norm
+from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.limits.clearance import clearances, leg_pairs
 from gsp.limits.kinds import (
     Quantity,
     clearance_quantities,
@@ -24,6 +23,7 @@ from gsp.limits.kinds import (
     joint_quantities,
     position_quantities,
 )
+from gsp.limits.legs import all_cone_angles, clearances, cone_axes, greatest_angles, leg_pairs
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import (
     BoundedQuantities,
@@ -44,8 +44,6 @@ if TYPE_CHECKING:
 # From this number of poses on compiled code evaluates the indices that it covers; fewer take less
 # time in numpy than the compiled code takes to load.
 POSES_FOR_COMPILED = 4096
-# Sine of the least angle between the axis of a cone and the line of a C joint.
-LEAST_CONE_SINE = 1e-9
 
 
 class _Bounded(NamedTuple):
@@ -58,7 +56,12 @@ class _Bounded(NamedTuple):
 
 
 def bounded_quantities(
-    design: Design, limits: Limits | None = None, *, crossed: bool = False, driven: bool = False
+    design: Design,
+    limits: Limits | None = None,
+    *,
+    crossed: bool = False,
+    driven: bool = False,
+    smooth: bool = False,
 ) -> BoundedQuantities:
     """Return the limits of a design as quantities between bounds, joints first.
 
@@ -72,6 +75,8 @@ def bounded_quantities(
         no interior.
     driven : bool
         Allow legs that are driven at the base, with limits other than cones and clearances.
+    smooth : bool
+        Take thresholds on the greatest value of the actuators for thresholds on all these values.
 
     Returns
     -------
@@ -95,7 +100,7 @@ def bounded_quantities(
     bounds = _strokes(design, given)
     named, parts = joint_quantities(design), [_joints(design)]
     sizes = [np.where(design.angular, 1.0, design.rms_radius)]
-    for add in (_cones, _clearance, _thresholds, _position):
+    for add in (_cones, _clearance, partial(_thresholds, smooth=smooth), _position):
         more = add(design, given)
         if more is not None:
             named += more.named
@@ -153,89 +158,11 @@ def _cones(design: Design, limits: Limits) -> _Bounded | None:
         return None
     n = design.n_legs
     named = tuple(one for side, _, _ in sides for one in cone_quantities(design, side))
-    # NaN stands for no cone, as in strokes.
-    most = [_per_leg(f"limits.{side}_cone", cone, n) for side, cone, _ in sides]
+    most = [greatest_angles(f"limits.{side}_cone", cone, n) for side, cone, _ in sides]
     greatest = np.concatenate(most)
-    greatest = np.where(np.isnan(greatest), np.inf, greatest)
     bounds = np.stack((np.full(len(named), -np.inf), greatest), axis=1)
-    measure = partial(_all_cone_angles, [(side, axes) for side, _, axes in sides])
+    measure = partial(all_cone_angles, [(side, axes) for side, _, axes in sides])
     return _Bounded(named, bounds, _of_posture(design, measure), 1.0)
-
-
-def _all_cone_angles(sides: Sequence[tuple[str, Array]], posture: Posture) -> Array:
-    return np.concatenate([_cone_angles(posture, side, axes) for side, axes in sides], axis=-1)
-
-
-def _per_leg(what: str, cone: ArrayLike, n: int) -> Array:
-    angles = np.asarray(cone, dtype=np.float64)
-    if angles.shape not in ((), (n,)):
-        got = f"shape {angles.shape}"
-        raise InvalidInput(expected(what, f"one angle, or {n}, one per leg", got))
-    return np.broadcast_to(angles, (n,))
-
-
-def _leg_directions(posture: Posture, side: str) -> Array:
-    along = posture.segments.along
-    if side == "platform":
-        along = np.asarray(along @ posture.pose.rotation)
-    return along
-
-
-def _cone_angles(posture: Posture, side: str, axes: Array) -> Array:
-    """Angles between legs and axes, accurate for small angles too: shape (..., n_legs)."""
-    along = _leg_directions(posture, side)
-    across = norm(cross(along, np.broadcast_to(axes, along.shape)))
-    return np.arctan2(across, dot(along, axes))
-
-
-def cone_axes(design: Design, side: str, given: ArrayLike | None) -> Array:
-    """Return the axes of the cones on "base" or "platform": given, or those of the home pose.
-
-    A leg stays perpendicular to the line of a C joint. So the angle from the given axis, projected
-    onto the plane across the line, is the turn about the line.
-
-    Parameters
-    ----------
-    design : Design
-    side : "base" or "platform"
-    given : (n_legs, 3) array_like or None
-
-    Returns
-    -------
-    (n_legs, 3) array
-        In the axes of that side, of any length.
-
-    Raises
-    ------
-    MissingParameter
-        If none are given and the design has no home pose.
-    InvalidInput
-        On a wrong shape, or an axis along the line of a C joint.
-    """
-    if given is not None:
-        what = f"limits.{side}_axes"
-        return _across_lines(design, side, what, check_array(what, given, (design.n_legs, 3)))
-    if design.home is None:
-        raise MissingParameter(
-            f"limits.{side}_cone: expected {side}_axes, or a design with a home pose, received none"
-        )
-    axes = _leg_directions(design.at(design.home), side)
-    return check_array(f"{side} axes from the home pose", axes, (design.n_legs, 3))
-
-
-def _across_lines(design: Design, side: str, what: str, axes: Array) -> Array:
-    lines = np.array([getattr(leg, f"{side}_line") for leg in design.legs])
-    directions = getattr(design, f"{side}_directions")[lines]
-    along = dot(axes[lines], directions)
-    across = axes[lines] - along[:, None] * directions
-    bad = norm(across) < LEAST_CONE_SINE * norm(axes[lines])
-    if bad.any():
-        i = int(np.flatnonzero(lines)[bad][0])
-        wanted = "an axis that is not along the line of the leg, about which it turns"
-        raise InvalidInput(expected(f"{what}[{i}]", wanted, brief(axes[i].tolist())))
-    result = axes.copy()
-    result[lines] = across
-    return result
 
 
 def _clearance(design: Design, limits: Limits) -> _Bounded | None:
@@ -247,7 +174,7 @@ def _clearance(design: Design, limits: Limits) -> _Bounded | None:
     return _Bounded(clearance_quantities(design), bounds, quantities, design.rms_radius)
 
 
-def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
+def _thresholds(design: Design, limits: Limits, *, smooth: bool) -> _Bounded | None:
     if not limits.thresholds:
         return None
     # Here, as the other limits need no index, and loading the indices takes longer than they do.
@@ -263,10 +190,17 @@ def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
 
     names = tuple(index.name for index in indices)
     bounds = np.array([(low, high) for _, low, high in limits.thresholds])
-    exact = _of_posture(design, partial(_index_values, names, settings))
-    values = partial(_many_index_values, design, settings, names)
     near = np.where(np.isfinite(bounds), np.abs(bounds), 0.0).max(axis=1)
     size = np.where(near > 0.0, near, 1.0)
+    if smooth:
+        split = [index.parts is not None and low == -np.inf for index, low, _ in limits.thresholds]
+        counts = np.where(split, len(design.joint_names), 1)
+        measure = partial(_smooth_values, names, split, settings)
+        named = index_quantities(np.repeat(names, counts).tolist())
+        each = (np.repeat(bounds, counts, axis=0), _of_posture(design, measure))
+        return _Bounded(named, *each, np.repeat(size, counts))
+    exact = _of_posture(design, partial(_index_values, names, settings))
+    values = partial(_many_index_values, design, settings, names)
     quantities = replace(exact, values=values)
     return _Bounded(index_quantities(names), bounds, quantities, size)
 
@@ -275,6 +209,18 @@ def _index_values(names: Sequence[str], settings: Settings, posture: Posture) ->
     indices = [INDICES[name] for name in names]
     values = [index.function(posture, **settings.for_index(index)) for index in indices]
     return np.stack(values, axis=-1)
+
+
+def _smooth_values(
+    names: Sequence[str], split: Sequence[bool], settings: Settings, posture: Posture
+) -> Array:
+    """Return values of indices, of some those of each actuator instead of the greatest one."""
+    found = []
+    for index, parts in zip((INDICES[name] for name in names), split, strict=True):
+        function = index.parts if parts and index.parts is not None else index.function
+        values = function(posture, **settings.for_index(index))
+        found.append(values if parts else values[..., None])
+    return np.concatenate(found, axis=-1)
 
 
 def _many_index_values(

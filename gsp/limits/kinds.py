@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from gsp.limits.clearance import leg_pairs
+from gsp.limits.legs import leg_pairs
 from gsp.model.design import AnchoredDesign, Design
 
 Kind = Literal["joint", "position", "cone", "clearance", "index"]

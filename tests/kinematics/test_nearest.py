@@ -154,3 +154,28 @@ def test_the_distance_is_that_of_the_size_where_an_index_keeps_the_unit():
     step = (ends[0] - ends[1]) / design.rms_radius
     turn = gsp.geometry.log3(found.pose.rotation @ away.rotation.T)
     assert found.distance == pytest.approx(np.hypot(*map(np.linalg.norm, (step, turn))), rel=1e-9)
+
+
+def test_the_greatest_force_of_several_actuators_at_once():
+    """Beside a symmetric pose F_max has an edge, where other actuators have the greatest force."""
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    away = design.home.moved([0.3, -0.2, 0.1, 0.4, 0.3, 0.5])
+    limits = gsp.Limits(indices=["F_max <= 0.9"], length=1.0)
+    found = gsp.nearest(design, away, limits)
+    rows = np.linalg.pinv(design.at(found.pose).homogeneous(1.0).T)
+    forces = np.sort(np.linalg.norm(rows, axis=1))
+    assert forces[-2] == pytest.approx(0.9, abs=1e-8)
+    assert forces[-1] == pytest.approx(0.9, abs=1e-8)
+    steps = np.random.default_rng(2).normal(size=(3000, 6)) * np.geomspace(1e-5, 0.1, 3000)[:, None]
+    size = design.rms_radius
+    around = found.pose.moved(steps * np.repeat([size, 1.0], 3))
+    allowed = around[gsp.feasible(design, around, limits).ok]
+    middle = design.platform_points.mean(axis=0)
+
+    def centre(pose):
+        return pose.position + pose.rotation @ middle
+
+    turn = np.linalg.norm(gsp.geometry.log3(allowed.rotation @ away.rotation.T), axis=-1)
+    shift = np.linalg.norm(centre(allowed) - centre(away), axis=-1) / size
+    assert allowed.size > 100
+    assert np.hypot(turn, shift).min() >= found.distance - 1e-8

@@ -5,7 +5,7 @@ from scipy.optimize import minimize
 import gsp
 from gsp.errors import GspError, InvalidInput, MissingParameter, UnknownIndex
 from gsp.limits.bounds import bounded_quantities
-from gsp.limits.clearance import clearances, leg_pairs, segment_distance
+from gsp.limits.legs import clearances, leg_pairs, segment_distance
 from gsp.workspace import Limits, feasible
 
 MIXED = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"

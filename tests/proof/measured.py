@@ -6,7 +6,7 @@ import numpy as np
 
 import gsp
 from gsp.limits.bounds import bounded_quantities
-from gsp.limits.clearance import leg_pairs
+from gsp.limits.legs import leg_pairs
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, boxes_of, problem_of
 from tests.support import turn

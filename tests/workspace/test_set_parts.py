@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.limits.clearance import segment_distance
+from gsp.limits.legs import segment_distance
 from gsp.workspace.sets import dextrous, reachable
 from gsp.workspace.sets.compiled import connecting
 from gsp.workspace.sets.compiled.gaps import segment_gap

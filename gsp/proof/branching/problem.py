@@ -17,8 +17,6 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import moving_axes, moving_places
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.limits import Limits
-from gsp.limits.bounds import cone_axes
-from gsp.limits.clearance import leg_pairs
 from gsp.limits.kinds import (
     Quantity,
     clearance_quantities,
@@ -27,6 +25,7 @@ from gsp.limits.kinds import (
     joint_quantities,
     position_quantities,
 )
+from gsp.limits.legs import cone_axes, leg_pairs
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
 from gsp.proof.branching.requirements import is_empty, write_bounds

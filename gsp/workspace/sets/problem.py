@@ -14,8 +14,8 @@ from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import moving_axes, moving_places
 from gsp.geometry.vectors import Array, norm
 from gsp.limits import Limits
-from gsp.limits.bounds import bounded_quantities, cone_axes
-from gsp.limits.clearance import leg_pairs
+from gsp.limits.bounds import bounded_quantities
+from gsp.limits.legs import cone_axes, leg_pairs
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of

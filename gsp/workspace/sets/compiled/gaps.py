@@ -1,6 +1,6 @@
 """Compiled distance of two segments, for code that takes one cell at a time.
 
-`gsp.limits.clearance` computes the same on arrays, for limits of postures: it is called without
+`gsp.limits.legs` computes the same on arrays, for limits of postures: it is called without
 numba, whose import takes most of a second. Cells need it inside a compiled loop.
 
 Only import it where it is used: it loads numba.
@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
-from gsp.limits.clearance import PARALLEL_SINE_SQUARED
+from gsp.limits.legs import PARALLEL_SINE_SQUARED
 
 # Parts of a segment that moves with one of its ends.
 PARTS_OF_SEGMENT = 4
