@@ -29,9 +29,10 @@ from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import DIFFERENCE_STEP
 from gsp.model.design import Design
+from gsp.progress import Progress, meter
 
-# By how much the nearest pose may violate a limit: distances as a share of the size, others as
-# they are.
+# By how much the nearest pose may violate a limit: distances as a share of the size, indices as one
+# of their threshold, angles as they are.
 LIMIT_TOLERANCE = 1e-9
 # The same for the searches, whose lengths are rounded.
 SEARCH_TOLERANCE = 1e-6
@@ -46,6 +47,9 @@ QUICK_MODES = "D1^6"
 SAMPLED_SIZES, RANDOM_STEPS, NEAREST_SAMPLES = (0.05, 0.15, 0.4, 1.0), 500, 3
 # How far a search on exact lengths may move an end, and the steps of Newton's method for it.
 LONGEST_CORRECTION, CORRECTION_STEPS = 1e-3, 3
+# Most steps of sequential quadratic programming: to a minimum, and next to one. Where functions are
+# not smooth it takes all of them.
+SEARCH_STEPS, STEPS_TO_MINIMUM = 200, 20
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -74,6 +78,7 @@ def nearest(
     *,
     starts: int = 8,
     rng: np.random.Generator | int = 0,
+    progress: Progress = None,
 ) -> Nearest:
     """Return the feasible pose nearest to a given one: the best local minimum of several searches.
 
@@ -86,7 +91,7 @@ def nearest(
     If none is found, assembly modes of joint values within the strokes are tried, for six D1 legs
     or drives, and random poses.
     The nearest end is tested to second order and made exact by Newton's method. That there is no
-    nearer pose is not proven. Limits hold to 1e-9 of the size.
+    nearer pose is not proven. Limits hold to 1e-9 of the size, thresholds to 1e-9 of their value.
 
     The searches take lengths rounded to nine digits, in units of the size and about the centres of
     the anchors. So the result is the same in every unit and for all origins of the frames, unless
@@ -107,6 +112,9 @@ def nearest(
         Number of searches, without that from the home pose.
     rng : numpy.random.Generator or int
         Generator or seed of the random starts.
+    progress : function (done, total), bool or None
+        Called with the number of searches; see `gsp.evaluate`. They take a second together as a
+        rule, a minute or two with thresholds on indices of redundant designs or drives.
 
     Returns
     -------
@@ -149,9 +157,13 @@ def nearest(
     rough = _Search(small.rounded(), Pose(rounded(target.position), target.rotation))
     begin = [np.zeros(6), *generator.uniform(-0.5, 0.5, (number - 1, 6))]
     home = exact.home()
-    ends = [rough.minimum_from(start) for start in begin]
     if home is not None:
-        ends += [rough.minimum_from(rounded(home)), home]
+        begin.append(rounded(home))
+    ends: list[Array | None] = [home]
+    with meter(progress, "nearest") as report:
+        for done, start in enumerate(begin, 1):
+            ends.append(rough.minimum_from(start))
+            report(done, len(begin))
     if all(end is None for end in ends):
         ends = [rough.restored_from(start) for start in begin]
     if all(end is None for end in ends):
@@ -184,8 +196,8 @@ class _Search:
         )
         self.design, self.target = small.design, target
         self.centre = small.design.platform_points.mean(axis=0)
-        # Of a step, where the design has kept its own unit.
-        self.length = small.design.rms_radius if small.size == 1.0 else 1.0
+        # Of a step: the size, which is not 1 where the design has kept its own unit.
+        self.length = small.design.rms_radius
         drives = [row.constraint.driven for row in self.design.rows]
         self.drives = np.flatnonzero(drives)
         self.cranks = np.flatnonzero(self.design.angular & drives)
@@ -196,6 +208,8 @@ class _Search:
         limits[self.cranks] = np.where(ends > 0.0, np.clip(angles, -ends, ends), angles)
         self.low, self.high = limits.T
         self.finite = np.isfinite(self.low), np.isfinite(self.high)
+        sizes = [self.bounds.sizes[self.finite[0]], self.bounds.sizes[self.finite[1]]]
+        self.sizes = np.concatenate((*sizes, np.full(len(self.drives), self.length)))
         # Angles of cranks are counted from the middle of their strokes.
         closed = np.isfinite(angles).all(axis=-1, keepdims=True)
         self.middles = np.where(closed, angles, 0.0).mean(axis=-1)
@@ -218,7 +232,7 @@ class _Search:
         return np.concatenate(((middles[0] - middles[1]) / self.length, turn))
 
     def slacks(self, x: Array, least_reach: float = LEAST_REACH) -> Array:
-        """Return how far the quantities are inside of their bounds; −1e9 if undefined.
+        """Return how far the quantities are inside of their bounds, per size; −1e9 if undefined.
 
         The last ones state how far drives reach beyond the pose. Where one does not, its joint
         value violates nothing.
@@ -229,8 +243,8 @@ class _Search:
         low, high = values - self.low, self.high - values
         lost = self.drives[np.isnan(values[self.drives])]
         low[lost] = high[lost] = 0.0
-        reach = reaches(self.design, at.position, at.rotation)[0] - least_reach
-        slacks = np.concatenate((low[self.finite[0]], high[self.finite[1]], reach))
+        reach = reaches(self.design, at.position, at.rotation)[0] - least_reach * self.length
+        slacks = np.concatenate((low[self.finite[0]], high[self.finite[1]], reach)) / self.sizes
         return np.asarray(np.nan_to_num(slacks, nan=-1e9))
 
     def slopes(self, x: Array) -> Array:
@@ -244,7 +258,8 @@ class _Search:
         turns = about_point(rows, at.rotation @ self.centre)[:, 3:] @ exp3_rates(x[3:])
         rates = np.nan_to_num(np.hstack((self.length * rows[:, :3], turns)))
         inner, reach = rates[:n], rates[n:]
-        return np.concatenate((inner[self.finite[0]], -inner[self.finite[1]], reach))
+        joined = np.concatenate((inner[self.finite[0]], -inner[self.finite[1]], reach))
+        return np.asarray(joined / self.sizes[:, None])
 
     def allowed(self, x: Array, slack: float = LIMIT_TOLERANCE) -> bool:
         inside = np.isfinite(x).all() and norm(x[3:]) <= np.pi
@@ -304,7 +319,7 @@ class _Search:
         begin = corrected(self.functions, end)
         return end if begin is None else local_minimum(self.functions, begin, self.end_from)
 
-    def end_from(self, start: Array, accuracy: float = 1e-14) -> Array:
+    def end_from(self, start: Array, accuracy: float = 1e-14, steps: int = SEARCH_STEPS) -> Array:
         """Return where sequential quadratic programming ends."""
         from scipy.optimize import minimize
 
@@ -315,7 +330,7 @@ class _Search:
             jac=lambda x: 2.0 * x,
             method="SLSQP",
             constraints={"type": "ineq", "fun": self.slacks, "jac": self.slopes},
-            options={"maxiter": 200, "ftol": accuracy},
+            options={"maxiter": steps, "ftol": accuracy},
         )
         return np.asarray(found.x)
 
@@ -323,7 +338,7 @@ class _Search:
         """Return the minimum next to an end of a search to rounding, or nearly so."""
         better = self._newton(end)
         if not self._next(better, end):
-            better = self.end_from(end, 1e-28)
+            better = self.end_from(end, 1e-28, STEPS_TO_MINIMUM)
         if self._next(better, end):
             return better
         begin = corrected(self.functions, end)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from gsp import arguments
 from gsp.errors import InvalidInput, MissingSoftware, expected
@@ -95,13 +98,38 @@ class Film(ReadOnly):
             raise InvalidInput(expected("seconds", wanted, f"{self.seconds:g}"))
 
     def _write(self, path: Path, report: Report) -> None:
-        writer = _writer(path.suffix.lower(), self.frames / self.seconds)
+        suffix = path.suffix.lower()
 
         def drawn(frame: int, total: int) -> None:
             report(frame + 1, total)
 
         with style():
-            self._animation().save(path, writer, dpi=FILM_DPI, progress_callback=drawn)
+            if suffix == ".gif":
+                self._write_gif(path, report)
+            else:
+                writer = _writer(suffix, self.frames / self.seconds)
+                self._animation().save(path, writer, dpi=FILM_DPI, progress_callback=drawn)
+
+    def _write_gif(self, path: Path, report: Report) -> None:
+        """Write a GIF, which has times in hundredths of a second, that lasts as long as the film.
+
+        The writer of matplotlib gives all pictures the same time, rounded down.
+        """
+        import matplotlib.pyplot as plt
+        from PIL import Image
+
+        pictures = []
+        for frame in range(self.frames):
+            self.show(frame)
+            with plt.rc_context({"savefig.bbox": None}), BytesIO() as buffer:
+                self.figure.savefig(buffer, format="png", dpi=FILM_DPI)
+                pictures.append(Image.open(buffer).convert("RGB"))
+            report(frame + 1, self.frames)
+        ends = np.round(np.linspace(0.0, 100.0 * self.seconds, self.frames + 1))
+        times = (10.0 * np.diff(ends)).astype(int).tolist()  # ms
+        pictures[0].save(
+            path, "GIF", save_all=True, append_images=pictures[1:], duration=times, loop=0
+        )
 
     def _animation(self) -> FuncAnimation:
         from matplotlib.animation import FuncAnimation
@@ -144,8 +172,8 @@ def check_film(path: str | PathLike[str], *, overwrite: bool = False) -> None:
 
 def _writer(suffix: str, rate: Any) -> AbstractMovieWriter:
     """Return the writer of matplotlib for a kind of file, and a number of pictures per second."""
-    from matplotlib.animation import FFMpegWriter, HTMLWriter, PillowWriter
+    from matplotlib.animation import FFMpegWriter, HTMLWriter
 
     if suffix == ".html":
         return HTMLWriter(fps=rate, embed_frames=True, embed_limit=LARGEST_PAGE)
-    return PillowWriter(fps=rate) if suffix == ".gif" else FFMpegWriter(fps=rate)
+    return FFMpegWriter(fps=rate)

@@ -122,11 +122,12 @@ def test_joints_have_their_names_kinds_and_values():
 
 def test_strokes_become_limits():
     design, pose = a_posture()
-    strokes = [[0.1, 2.0], [np.nan, np.nan], *[[0.2, 3.0]] * (len(design.joint_names) - 2)]
+    ends = design.at(pose).joints[0] + [-0.1, 2.0]
+    strokes = [ends, *[[np.nan, np.nan]] * (len(design.joint_names) - 1)]
     model, _, _ = to_pinocchio(design.replace(strokes=strokes), pose)
     free, _, _ = to_pinocchio(design, pose)
     first, second = (model.joints[model.getJointId(n)].idx_q for n in design.joint_names[:2])
-    assert (model.lowerPositionLimit[first], model.upperPositionLimit[first]) == (0.1, 2.0)
+    assert (model.lowerPositionLimit[first], model.upperPositionLimit[first]) == tuple(ends)
     assert model.upperPositionLimit[second] == free.upperPositionLimit[second]
 
 

@@ -7,14 +7,24 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gsp
-from gsp.bridges import Drives, Solids, agreement, mujoco_rates, simulate, to_mjcf
+from gsp.bridges import (
+    Drives,
+    Solids,
+    agreement,
+    mujoco_rates,
+    simulate,
+    to_mjcf,
+    to_pinocchio,
+    to_sdf,
+    to_urdf,
+)
 from gsp.bridges.mujoco.mjcf import LARGEST_REACH
 from gsp.bridges.mujoco.program import compiled, gaps_of
-from gsp.bridges.mujoco.simulation import load
+from gsp.bridges.mujoco.simulation import _changes, load
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
 from gsp.errors import FailedComputation, InvalidInput, MissingParameter, MissingSoftware
 from gsp.model.units import METRES_PER_UNIT
-from tests import campaign
+from tests import campaign, driven
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -194,6 +204,72 @@ def test_masses_and_strokes_are_the_users():
     change = np.array([0.01, 0.3]) - 1e-3 * TWO.at(TWO.home).joints[0]
     np.testing.assert_allclose(model.actuator("d1").ctrlrange, change)
     assert not model.joint("d2").limited[0]
+
+
+@pytest.mark.parametrize(
+    ("stroke", "control", "end"), [((np.nan, 1.45), 0.2, 1.45), ((1.2, np.nan), -0.4, 1.2)]
+)
+def test_strokes_with_one_end_stop_the_servos(stroke, control, end):
+    design = gsp.hexapod(1.0, 0.4, 0.6, 0.4, 1.2, unit="m").replace(strokes=[stroke] * 6)
+    model, data = loaded(to_mjcf(design, design.home, gravity=[0, 0, 0]))
+    data.ctrl[:] = control
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+    np.testing.assert_allclose(data.actuator_length, end, atol=1e-3)
+
+
+def test_a_locked_actuator_has_a_range():
+    joints = LIFT.at(LIFT.home).joints
+    strokes = np.stack((joints, joints), axis=1)
+    model, _ = loaded(to_mjcf(LIFT.replace(strokes=strokes), LIFT.home))
+    np.testing.assert_allclose(model.joint("d1").range, joints[0], rtol=1e-11)
+    np.testing.assert_allclose(model.actuator("d1").ctrlrange, 0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("form", [to_mjcf, to_urdf, to_sdf, to_pinocchio, simulate])
+def test_a_pose_beyond_the_strokes_is_refused(form):
+    """The model would not stay there."""
+    design = LIFT.replace(strokes=[(0.5, 1.2)] * 6)
+    with pytest.raises(InvalidInput, match=r"pose: expected d1 within its stroke .* 0.5 to 1.2"):
+        form(design, LIFT.home)
+    mujoco_rates(design, LIFT.home)
+
+
+def test_a_crank_with_one_end_of_its_stroke_turns_within_it():
+    """From 3.0 to -2.9: through π without a stroke, the other way if it ends at 3.1."""
+    design = driven.rotary()
+    theta = np.where(np.arange(6) == 4, 3.0, design.at(design.home).joints)
+    assert theta[4] == 3.0
+    change = _changes(design, np.where(np.arange(6) == 4, -2.9, theta), theta)
+    assert change[4] == pytest.approx(2.0 * np.pi - 5.9)
+    ended = design.replace(strokes=[(np.nan, 3.1)] * 6)
+    assert _changes(ended, np.where(np.arange(6) == 4, -2.9, theta), theta)[4] == -5.9
+
+
+def test_a_motion_to_the_other_branch_of_a_drive_is_refused():
+    """The first carriage is driven far beyond the reach of its rod."""
+    design = driven.general("slider", 1)
+    joints = design.at(design.home).joints
+    for row in range(6):
+        far = joints + 3.0 * (np.arange(6) == row)
+        try:
+            found = simulate(design, design.home, far, duration=3.0)
+        except FailedComputation:
+            continue
+        reached = design.at(found.pose).joints
+        np.testing.assert_allclose(found.joints, reached, atol=0.1)
+
+
+@pytest.mark.parametrize("far", [1e3, 1e6])
+def test_a_platform_origin_far_away_changes_no_motion(far):
+    near = LIFT.at(LIFT.home).joints + [0.1, -0.05, 0.0, 0.1, 0.0, 0.05]
+    here = simulate(LIFT, LIFT.home, near, duration=1.0)
+    shifted = LIFT.with_origin([far, 0.0, 0.0])
+    there = simulate(shifted, shifted.home, near, duration=1.0)
+    np.testing.assert_allclose(there.joints, here.joints, atol=1e-8)
+    np.testing.assert_allclose(there.speed, here.speed, atol=1e-6)
+    position = there.pose.position + there.pose.rotation @ [-far, 0.0, 0.0]
+    np.testing.assert_allclose(position, here.pose.position, atol=1e-15 * far + 1e-8)
 
 
 def test_sensors_read_joints_forces_and_the_pose():

@@ -319,29 +319,64 @@ def test_a_root_that_gazebo_fixes_to_the_world(tmp_path):
         "<child>base</child>\n        </joint></gazebo>", "<child>platform</child></joint></gazebo>"
     )
     assert wrong != text
-    assert_refused(tmp_path, path.name, wrong, "<parent>: expected the name of a link, received 'w")
+    assert_refused(
+        tmp_path, path.name, wrong, "one fixed joint at most of the world, with the root 'base'"
+    )
+    twice = text.replace("</robot>", fixed.replace('"f"', '"g"'))
+    assert_refused(tmp_path, path.name, twice, "name='g'>: expected one fixed joint at most")
 
 
-def test_joints_of_sdf_between_frames(tmp_path):
-    """A frame in a frame of the platform stands for the platform, with the joint where it is."""
+TIES_OF_DRAKE = {
+    "coupled": (r'(<joint name="d1"[^>]*>)', r'\1<drake:mimic joint="d2" multiplier="1"/>'),
+    "pinned": ("</model>", '<drake:ball_constraint name="x"/></model>'),
+    "strut": ("</model>", '<drake:joint name="strut" type="planar"/></model>'),
+}
+
+
+@pytest.mark.parametrize("case", TIES_OF_DRAKE)
+def test_tags_of_drake_that_tie_are_refused_in_sdf(case, tmp_path):
     path = exported("sdf", tmp_path)
-    text = path.read_text()
-    frames = """<frame name="top" attached_to="platform"/><frame name="tip" attached_to="top"/>"""
-    changed = re.sub("<(parent|child)>platform</", r"<\1>tip</", text).replace(
-        "</model>", frames + "</model>")  # fmt: skip
-    assert changed.count(">tip</") >= 6
-    path.write_text(changed)
+    text = edited(path.read_text(), TIES_OF_DRAKE[case])
+    assert_refused(tmp_path, path.name, text, "<drake:.*: expected joints of the format, and no")
+
+
+@pytest.mark.parametrize("form", ["mjcf", "urdf"])
+def test_limits_that_no_length_can_have_are_named(form, tmp_path):
+    path = exported(form, tmp_path, LIFT.replace(strokes=[(0.1, 9.0)] * 6))
+    change = {
+        "urdf": (r'(<joint name="d3".*?)lower="[^"]*" upper="[^"]*"', r'\1lower="-20" upper="-10"'),
+        "mjcf": (r'(<joint name="d3"[^>]*?)range="[^"]*"', r'\1range="-20 -10"'),
+    }[form]
+    text = edited(path.read_text(), change)
+    message = "leg 3 .*: expected limits that a length can have, received limits of 'd3' from -"
+    assert_refused(tmp_path, path.name, text, message)
+
+
+@pytest.mark.parametrize("form", ["mjcf", "urdf", "sdf"])
+def test_strokes_with_one_end_are_read_back(form, tmp_path):
+    strokes = [(np.nan, 2.5), (1.2, np.nan), (np.nan, np.nan), (1.0, 3.0), (1.5, 2.2), (0.5, 5.0)]
+    found = read_model(exported(form, tmp_path, LIFT.replace(strokes=strokes))).strokes
+    # MuJoCo has no length below zero, and a length has none.
+    np.testing.assert_allclose(np.nan_to_num(found), np.nan_to_num(strokes), atol=1e-9)
+    assert np.isnan(found).tolist() == np.isnan(strokes).tolist()
+
+
+@pytest.mark.parametrize("holder", ["platform", "leg1_platform"])
+def test_joints_of_sdf_between_frames(holder, tmp_path):
+    """A frame on a frame of the platform, or of a joint that carries it, is the platform."""
+    path = exported("sdf", tmp_path)
+    start, end = path.read_text().split('<joint name="leg2_base"')
+    top = f'<frame name="top" attached_to="{holder}"><pose relative_to="platform"/></frame>'
+    frames = f'{top}<frame name="tip" attached_to="top"/></model>'
+    end = end.replace("<child>platform<", "<child>tip<").replace("</model>", frames)
+    assert end.count(">tip<") == 5
+    text = f'{start}<joint name="leg2_base"{end}'
+    path.write_text(text)
     assert_anchors(read_model(path))
     for attached in ("tip", "nowhere"):
-        wrong = changed.replace(
-            'name="top" attached_to="platform"', f'name="top" attached_to="{attached}"'
-        )
-        assert_refused(
-            tmp_path,
-            path.name,
-            wrong,
-            "a link, joint or frame of the model|the name of a link of the model, or",
-        )
+        wrong = text.replace(f'"top" attached_to="{holder}"', f'"top" attached_to="{attached}"')
+        message = "a link, joint or frame of the model|the name of a link of the model, or"
+        assert_refused(tmp_path, path.name, wrong, message)
 
 
 # Legs with six joints of which two do the same.
@@ -392,6 +427,8 @@ ONE_MOTOR = "".join(f'<joint name="d{i}"/>' for i in (1, 2)) + '<actuator name="
 SAME_MOTOR = '<transmission><joint name="d{}"/><actuator name="d1_actuator"/></transmission>'
 CONTROL = """<ros2_control><joint name="d2"><param name="mimic">d1</param></joint>
     </ros2_control>"""
+CONTROL_OF_ONE = '<ros2_control><joint name="d1"><command_interface/></joint></ros2_control>'
+INNER = """<ros2_control><transmission><joint name="leg1_base_x"/></transmission></ros2_control>"""
 PLUGIN = """<gazebo><plugin filename="libmimic.so"><joint>d1</joint><mimicJoint>d2</mimicJoint>
     </plugin></gazebo>"""
 HELD = """<drake:ball_constraint name="held"><drake:ball_constraint_body_A name="base"/>
@@ -405,10 +442,13 @@ HELD = """<drake:ball_constraint name="held"><drake:ball_constraint_body_A name=
         (SAME_MOTOR.format(2), "<actuator>: expected one of no other transmission"),
         (CONTROL, "a mimic of 'd1'"),
         (PLUGIN, "a plugin of a mimic of 'd2'"),
-        (HELD, "expected no constraints but loops"),
-        ('<loop_joint name="x" type="fixed"/>', "expected no constraints but loops"),
-        ('<coupling name="x"/>', "expected no constraints but loops"),
-        ('<loop name="x" type="fixed"/>', "expected no constraints but loops"),
+        (HELD, "no constraints but those of its loops"),
+        ('<loop_joint name="x" type="fixed"/>', "no constraints but those of its loops"),
+        ('<coupling name="x"/>', "no constraints but those of its loops"),
+        ('<loop name="x" type="fixed"/>', "no constraints but those of its loops"),
+        ('<drake:joint name="strut" type="ball"/>', "name='strut'>: expected joints of the format"),
+        (CONTROL_OF_ONE, "expected the joints that have an actuator in .*, received none for 'd2'"),
+        (INNER, "<transmission.*: expected the joints .*, received one for 'leg1_base_x'"),
     ],
 )
 def test_elements_of_urdf_that_tie_joints_or_links_are_refused(element, message, tmp_path):

@@ -179,3 +179,17 @@ def test_the_greatest_force_of_several_actuators_at_once():
     shift = np.linalg.norm(centre(allowed) - centre(away), axis=-1) / size
     assert allowed.size > 100
     assert np.hypot(turn, shift).min() >= found.distance - 1e-8
+
+
+def test_an_empty_workspace_is_one_in_every_unit():
+    """A vacuous threshold on CDN keeps the unit; legs are too short for the height, by 1e-3."""
+    for scale in (1.0, 1e-6):
+        design = gsp.hexapod(1.0, 0.4, 0.6, 0.4, 1.2).scaled(scale)
+        length = float(design.at(design.home).joints[0])
+        limits = gsp.Limits(
+            strokes=[[0.9 * length, length]] * 6,
+            position=[None, None, (1.201 * scale, 2.0 * scale)],
+            indices=["CDN <= 1e12"],
+        )
+        with pytest.raises(EmptyWorkspace):
+            gsp.nearest(design, design.home, limits, starts=2)

@@ -117,6 +117,21 @@ def test_files_have_all_pictures_and_last_as_long_as_asked(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.html"]
 
 
+@pytest.mark.parametrize(("seconds", "frames"), [(0.33, 14), (1.15, 7)])
+def test_a_gif_lasts_as_long_as_the_film(seconds, frames, tmp_path):
+    """Times of pictures are hundredths of a second, and not all equal."""
+    path = gsp.sweeps.turn(LIFT.home, "z", np.linspace(0.0, 30.0, frames))
+    gsp.plots.animate(LIFT, path, frames=frames, seconds=seconds).save(tmp_path / "a.gif")
+    with Image.open(tmp_path / "a.gif") as picture:
+        times = []
+        for k in range(picture.n_frames):
+            picture.seek(k)
+            times.append(picture.info["duration"])
+    assert len(times) == frames
+    assert sum(times) == pytest.approx(1000.0 * seconds)
+    assert max(times) - min(times) <= 10
+
+
 @pytest.mark.parametrize(("seconds", "frames"), [(1e9, 3), (0.03, 3), (0.5, 60)])
 def test_times_that_a_gif_cannot_state(seconds, frames, tmp_path):
     path = gsp.sweeps.turn(LIFT.home, "z", np.linspace(0.0, 30.0, frames))

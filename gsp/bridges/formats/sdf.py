@@ -101,7 +101,7 @@ def to_sdf(
     MissingParameter
         If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
-        If `pose` is a batch, or `drives` does not fit the design.
+        If `pose` is a batch or beyond a stroke, or `drives` does not fit the design.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def to_sdf(
     chains = linkage(design, pose)
     metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
-    limits = joint_limits(design, drives, metres)
+    limits = joint_limits(design, pose, drives, metres)
     root = ElementTree.Element("sdf", {"version": VERSION, "xmlns:drake": NAMESPACE})
     model = ElementTree.SubElement(root, "model", name=title_of(design), canonical_link="base")
     _add_link(model, "base", Pose(np.zeros(3)), bodies["base"], metres)

@@ -126,7 +126,7 @@ def to_urdf(
     MissingParameter
         If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
-        If `pose` is a batch, or `drives` does not fit the design.
+        If `pose` is a batch or beyond a stroke, or `drives` does not fit the design.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def to_urdf(
     chains = linkage(design, pose)
     metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
-    limits = joint_limits(design, drives, metres)
+    limits = joint_limits(design, pose, drives, metres)
     name = {"name": title_of(design)}
     root = ElementTree.Element("robot", name | {"xmlns:drake": NAMESPACE})
     _add_link(root, "base", bodies["base"], metres)

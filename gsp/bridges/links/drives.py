@@ -13,8 +13,10 @@ from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.bridges.links.motions import Motion
 from gsp.checks import is_a
 from gsp.errors import InvalidInput, apart, expected
-from gsp.geometry.vectors import Array
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
+from gsp.model.design.checks import open_strokes
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -78,17 +80,23 @@ class JointLimit(NamedTuple):
     speed: float
 
 
+# How far a joint may be beyond its stroke, as a share of the size or in rad.
+STROKE_TOLERANCE = 1e-9
 # What URDF has for a limit of a joint where there is none, as it demands numbers [m, rad].
 NO_STROKE = 1e9
 UNLIMITED = JointLimit(-np.inf, np.inf, np.inf, np.inf)
 
 
-def joint_limits(design: Design, drives: Drives | None, metres: float) -> Mapping[str, JointLimit]:
+def joint_limits(
+    design: Design, pose: Pose, drives: Drives | None, metres: float
+) -> Mapping[str, JointLimit]:
     """Return the limits of the actuated joints by name.
 
     Parameters
     ----------
     design : Design
+    pose : Pose of batch shape ()
+        Of the model, which must be within the strokes: else it would not stay there.
     drives : Drives or None
     metres : float [m]
         Length of the design's unit.
@@ -96,8 +104,10 @@ def joint_limits(design: Design, drives: Drives | None, metres: float) -> Mappin
     Raises
     ------
     InvalidInput
-        If `drives` is not a Drives, or has other than one number, or one per actuator.
+        If `drives` is not a Drives, or has other than one number, or one per actuator, or the pose
+        is beyond a stroke.
     """
+    check_within(design, "pose", design.at(pose).joints)
     if drives is not None and not is_a(drives, Drives):
         raise InvalidInput(expected("drives", "a Drives or None", type(drives).__name__))
     n = len(design.joint_names)
@@ -113,6 +123,25 @@ def joint_limits(design: Design, drives: Drives | None, metres: float) -> Mappin
         name: JointLimit(*map(float, numbers))
         for name, *numbers in zip(design.joint_names, *rows, strict=True)
     }
+
+
+def check_within(design: Design, what: str, joints: Array) -> None:
+    """Raise InvalidInput for joint values beyond strokes, or such as no joint can have."""
+    margin = STROKE_TOLERANCE * np.where(design.angular, 1.0, design.rms_radius)
+    low, high = open_strokes(design.strokes, len(design.joint_names)).T
+    # Distances are not negative, and angles between lines are at most π.
+    angles = design.angular & ~cranks(design)
+    low = np.where(angles | ~np.asarray(design.signed), np.maximum(low, 0.0), low)
+    high = np.where(angles, np.minimum(high, np.pi), high)
+    for row in np.flatnonzero((joints < low - margin) | (joints > high + margin)):
+        name = design.joint_names[row]
+        wanted = f"{name} within its stroke or range, {low[row]:g} to {high[row]:g}"
+        raise InvalidInput(expected(what, wanted, f"{joints[row]:g}"))
+
+
+def cranks(design: Design) -> Mask:
+    """Return which actuated joints are cranks at the base: (n,)."""
+    return np.array([row.constraint.driven for row in design.rows]) & design.angular
 
 
 def limit_at_zero(limits: Mapping[str, JointLimit], motion: Motion, metres: float) -> JointLimit:

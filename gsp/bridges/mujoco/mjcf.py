@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.bridges.formats.markup import Node, joined, title_of
-from gsp.bridges.links.drives import Drives, JointLimit, joint_limits
+from gsp.bridges.links.drives import NO_STROKE, Drives, JointLimit, joint_limits
 from gsp.bridges.links.linkage import linkage
 from gsp.bridges.links.motions import Chain, Motion, Z, displacements
 from gsp.bridges.links.shapes import Body, Capsule
@@ -48,6 +48,8 @@ ROUNDED_SHARE = 1e-14
 # lines of a leg are nearly parallel. Rates by MuJoCo were right to 4e-7 up to 1.8e4 sizes, and
 # wrong from 1.9e4 sizes on.
 LARGEST_REACH = 1e4
+# Half the range of a locked joint, as a share of its value: MuJoCo takes no empty range.
+LOCKED = 1e-12
 # Bodies that do not move, or are not in the model.
 FIXED = ("base", "split")
 
@@ -100,10 +102,10 @@ def to_mjcf(
     MissingParameter
         If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
-        If `pose` is a batch, or a number is not usable, or a mass or an inertia of a link is
-        smaller than MuJoCo accepts, or a link is so long that its least moment of inertia is lost
-        to rounding, or the lines of a leg are so nearly parallel that its rail is longer than
-        10,000 sizes of the design.
+        If `pose` is a batch or beyond a stroke, or a number is not usable, or a mass or an inertia
+        of a link is smaller than MuJoCo accepts, or a link is so long that its least moment of
+        inertia is lost to rounding, or the lines of a leg are so nearly parallel that its rail is
+        longer than 10,000 sizes of the design.
 
     Examples
     --------
@@ -134,7 +136,7 @@ def to_mjcf(
     _add_platform(world, chains, pose, bodies, unit)
     _close(root, chains, unit)
     _actuate(root, chains, frequency, {"slide": mass, "turn": inertia}, unit)
-    _limit(root, chains, joint_limits(design, drives, unit), unit)
+    _limit(root, chains, joint_limits(design, pose, drives, unit), unit)
     _add_sensors(root, chains)
     _add_key(root, chains, pose, unit)
     ElementTree.indent(root)
@@ -290,7 +292,10 @@ def _limit(
     for motion in _active(chains):
         limit, servo = limits[motion.name], servos[motion.name]
         stroke = np.array([limit.least, limit.greatest])
-        if np.isfinite(stroke).all() and limit.least < limit.greatest:
+        if np.isfinite(stroke).any():
+            stroke = np.clip(stroke, -NO_STROKE, NO_STROKE)
+            if limit.least == limit.greatest:
+                stroke += LOCKED * max(abs(limit.least), LOCKED) * np.array([-1.0, 1.0])
             joints[motion.name].set("range", joined(stroke))
             servo.set("ctrlrange", joined(stroke - metric(motion, unit)))
         if np.isfinite(limit.effort):

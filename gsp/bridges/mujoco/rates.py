@@ -51,7 +51,7 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
     chains, solids = linkage(design, pose), _solids(design)
     check_drives(design, pose)
     try:
-        model, data = load(design, pose, solids)
+        model, data = load(design.replace(strokes=None), pose, solids)
     except InvalidInput as error:
         if not str(error).startswith("solids"):
             raise

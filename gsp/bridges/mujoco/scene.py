@@ -16,7 +16,7 @@ from gsp.bridges.links.solids import Solids, capsules, check_solids
 from gsp.bridges.mujoco.elements import SHORTEST_CAPSULE, configuration, wxyz
 from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.mujoco.program import compiled, load_mujoco
-from gsp.errors import InvalidInput, UndefinedPosture
+from gsp.errors import UndefinedPosture
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, perpendicular, unit
 from gsp.model.design import Design
@@ -45,13 +45,14 @@ class Scene:
     """
 
     def __init__(self, design: Design, poses: Pose, solids: Solids | None) -> None:
-        # A picture has no unit and no masses: the model has a size at which MuJoCo is accurate.
+        # A picture has no unit, strokes or masses; the size is one at which MuJoCo is accurate.
         solids = Solids(radius=check_solids(solids).radius, metres=1.0 / design.rms_radius)
         self._design, self._poses, self._solids = design, poses, solids
         self._unit = solids.unit(design)
         self._legs = [self._linkage(i) for i in range(poses.size)]
         self._spans = spans(self._legs)
-        self.model = compiled(to_mjcf(design, poses[0], solids))
+        free = design.replace(strokes=None)
+        self.model = compiled(to_mjcf(free, poses[0], solids))
         self.data = load_mujoco().MjData(self.model)
         for name, parts in self._bodies(0).items():
             if name == "base" or name.endswith("_rail"):
@@ -63,7 +64,8 @@ class Scene:
         except UndefinedPosture as error:
             if self._poses.size == 1:
                 raise
-            raise InvalidInput(f"pose {frame + 1} of {self._poses.size}: {error}") from error
+            undefined = [one._replace(pose=(frame,)) for one in error.undefined]
+            raise UndefinedPosture(self._design.name, undefined) from error
 
     def show(self, frame: int) -> None:
         """Put the model at a pose."""

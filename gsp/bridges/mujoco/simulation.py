@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
+from gsp.bridges.links.drives import check_within, cranks
 from gsp.bridges.links.solids import Solids, check_solids
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.mujoco.program import compiled, gaps_of, largest_gap, load_mujoco, silent
-from gsp.checks import check_array, check_positive
+from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import FailedComputation, InvalidInput, apart, expected
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
 
 # Most steps of a simulation, and steps after which their number is reported.
 MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
-# How far a joint may be beyond its stroke, as a share of the size or in rad.
-STROKE_TOLERANCE = 1e-9
 # Open loops, as a share of the size or in rad, above which a state is none of the design. Under
 # gravity, held or moved to what can be reached, they are open by less than 1e-4.
-OPEN_LOOP = 1e-3
+OPEN_LOOP = 3e-4
+# How much drives may differ from those of the pose on their branches, in sizes or rad: near a dead
+# centre as the root of what the loops are open.
+OTHER_BRANCH = 3.0 * OPEN_LOOP**0.5
 
 
 @read_only_tuple
@@ -98,8 +100,8 @@ def simulate(
         If MuJoCo is not installed.
     FailedComputation
         If the motion becomes unstable in MuJoCo, or ends with loops that are open by more than
-        1e-3 of the size of the design (rms_radius) or 1e-3 rad, as with targets that the legs
-        cannot reach together.
+        3e-4 of the size of the design (rms_radius) or 3e-4 rad, as with targets that the legs
+        cannot reach together, or with a drive at the base on its other branch.
     InvalidInput
         If the pose or `joints` is beyond the strokes of the design, or a target is negative for a
         distance, or outside [0, π] for an angle between lines.
@@ -114,16 +116,20 @@ def simulate(
     True
     """
     seconds = arguments.number("duration", check_positive("duration", duration))
+    check_type("design", design, Design)
+    check_type("pose", pose, Pose)
     mujoco = load_mujoco()
+    # A body far from its origin would lose digits.
+    centre = design.platform_points.mean(axis=0)
+    design, pose = design.with_origin(centre), pose.compose(Pose(centre))
     model, data = load(design, pose, solids, gravity, servo_frequency)
     scale = metres_of(design, solids)
     change = np.zeros(model.nu)
-    _check_within(design, "pose", design.at(pose).joints)
     if joints is not None:
         given = check_array("joints", joints, (model.nu,))
         if given.ndim != 1:
             raise InvalidInput(expected("joints", f"shape ({model.nu},)", f"shape {given.shape}"))
-        _check_within(design, "joints", given)
+        check_within(design, "joints", given)
         change = _changes(design, given * scale, data.actuator_length)
     longest = MOST_SIMULATED * model.opt.timestep
     if seconds > longest:
@@ -138,13 +144,16 @@ def simulate(
                 _check_stable(data, (step + 1) * model.opt.timestep)
                 report(step + 1, steps)
     mujoco.mj_forward(model, data)
-    gap = _closed(design, data, check_solids(solids).unit(design))
+    metres = check_solids(solids).unit(design)
+    _check_closed(data, OPEN_LOOP * design.rms_radius * metres)
     placed = data.body("platform")
-    found = Pose.from_quaternion(placed.xpos, np.roll(placed.xquat, -1))
+    found = Pose.from_quaternion(placed.xpos / metres, np.roll(placed.xquat, -1))
+    reached = _in_one_turn(design, np.array(data.actuator_length)) / scale
+    _check_branches(design, found, reached)
     return Simulation(
-        Pose(found.position / check_solids(solids).unit(design), found.rotation),
-        _in_one_turn(design, np.array(data.actuator_length)) / scale,
-        gap,
+        found.compose(Pose(-centre)),
+        reached,
+        largest_gap(data),
         float(np.abs(data.qvel[_legs(model)]).max()),
     )
 
@@ -155,39 +164,34 @@ def _legs(model: mujoco.MjModel) -> Mask:
     return np.asarray(model.jnt_type[model.dof_jntid] != int(free))
 
 
-def _closed(design: Design, data: mujoco.MjData, metres: float) -> float:
-    """Return the largest violation of a loop, or raise FailedComputation if one is open."""
+def _check_closed(data: mujoco.MjData, longest: float) -> None:
+    """Raise FailedComputation if a loop is open by more than a length [m] or a share of a turn."""
     gaps, turns = gaps_of(data)
     for gap, most, unit in (
-        (gaps.max(), OPEN_LOOP * design.rms_radius * metres, "m"),
+        (gaps.max(), longest, "m"),
         (turns.max(initial=0.0), OPEN_LOOP, "rad"),
     ):
         if gap > most:
             wanted = "targets that the legs reach together, and time to get there"
             got = f"a loop that is open by {gap:.3g} {unit} (most: {most:.3g})"
             raise FailedComputation(expected("simulate", wanted, got))
-    return largest_gap(data)
 
 
-def _check_within(design: Design, what: str, joints: Array) -> None:
-    """Raise InvalidInput for joint values beyond strokes, or such as no joint can have."""
-    margin = STROKE_TOLERANCE * np.where(design.angular, 1.0, design.rms_radius)
-    low, high = open_strokes(design.strokes, len(design.joint_names)).T
-    # Distances are not negative, and angles between lines are at most π.
-    angles = design.angular & ~_cranks(design)
-    low = np.where(angles | ~np.asarray(design.signed), np.maximum(low, 0.0), low)
-    high = np.where(angles, np.minimum(high, np.pi), high)
-    for row in np.flatnonzero((joints < low - margin) | (joints > high + margin)):
-        name = design.joint_names[row]
-        wanted = f"{name} within its stroke or range, {low[row]:g} to {high[row]:g}"
-        raise InvalidInput(expected(what, wanted, f"{joints[row]:g}"))
+def _check_branches(design: Design, pose: Pose, joints: Array) -> None:
+    """Raise FailedComputation if a drive has passed a dead centre, to its other branch."""
+    scale = np.where(design.angular, 1.0, design.rms_radius)
+    apart_by = _in_one_turn(design, joints - design.at(pose).joints) / scale
+    for row in np.flatnonzero(np.abs(apart_by) > OTHER_BRANCH):
+        wanted = "a motion on which drives keep their branches"
+        got = f"one on which {design.joint_names[row]} passed a singular posture of its drive"
+        raise FailedComputation(expected("simulate", wanted, got))
 
 
 def _changes(design: Design, targets: Array, start: Array) -> Array:
     """Return how far actuators go; a crank without a stroke takes the shorter way round."""
     change = targets - start
-    turning = _cranks(design)
-    turning &= ~np.isfinite(open_strokes(design.strokes, len(turning))).all(axis=1)
+    turning = cranks(design)
+    turning &= ~np.isfinite(open_strokes(design.strokes, len(turning))).any(axis=1)
     nearest = change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
     return np.where(turning, nearest, change)
 
@@ -195,11 +199,7 @@ def _changes(design: Design, targets: Array, start: Array) -> Array:
 def _in_one_turn(design: Design, joints: Array) -> Array:
     """Return joint values with angles of cranks in (−π, π], as the design has them."""
     angle = np.pi - np.mod(np.pi - joints, 2.0 * np.pi)
-    return np.where(_cranks(design), angle, joints)
-
-
-def _cranks(design: Design) -> Mask:
-    return np.array([row.constraint.driven for row in design.rows]) & design.angular
+    return np.where(cranks(design), angle, joints)
 
 
 def _check_stable(data: mujoco.MjData, time: float) -> None:

@@ -80,7 +80,7 @@ def to_pinocchio(
     MissingParameter
         If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
-        If `pose` is a batch, or `drives` does not fit the design.
+        If `pose` is a batch or beyond a stroke, or `drives` does not fit the design.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def to_pinocchio(
     bodies = capsules(design, chains, solids)
     machine = machine_of(design, pose, chains)
     machine.model.gravity.linear = np.array(GRAVITY) / metres
-    _limit(machine.model, design, drives, metres)
+    _limit(machine.model, design, pose, drives, metres)
     _add_inertias(machine.model, chains, bodies)
     return machine
 
@@ -211,9 +211,9 @@ def _add_inertias(
         model.appendBodyToJoint(model.getJointId(joints[name]), inertia, pin.SE3.Identity())
 
 
-def _limit(model: Any, design: Design, drives: Drives | None, metres: float) -> None:
+def _limit(model: Any, design: Design, pose: Pose, drives: Drives | None, metres: float) -> None:
     """Write strokes, greatest forces and speeds as limits of joints, in the unit of the design."""
-    limits = joint_limits(design, drives, metres)
+    limits = joint_limits(design, pose, drives, metres)
     angular = dict(zip(design.joint_names, design.angular, strict=True))
     for name, limit in limits.items():
         joint = model.joints[model.getJointId(name)]

@@ -9,11 +9,11 @@ from types import MappingProxyType
 
 from gsp import arguments
 from gsp.bridges.reading.formats.mjcf import read_mjcf
-from gsp.bridges.reading.formats.packages import design_of_package
 from gsp.bridges.reading.formats.sdf import read_sdf
 from gsp.bridges.reading.formats.urdf import read_urdf
 from gsp.bridges.reading.mechanism.designs import design_of
 from gsp.bridges.reading.mechanism.linkages import Linkage
+from gsp.bridges.reading.packages import design_of_package
 from gsp.checks import check_text
 from gsp.errors import GspError, InvalidInput, MalformedFile, MissingSoftware, expected
 from gsp.model.design import Design

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp.arguments import LARGEST_NUMBER
+from gsp.bridges.links.drives import NO_STROKE
 from gsp.bridges.mujoco.program import load_mujoco, silent
 from gsp.bridges.reading.formats.mujoco_constraints import actuators, equalities, loops, name_of
 from gsp.bridges.reading.mechanism.linkages import Freedom, Link, Linkage
@@ -149,7 +150,8 @@ def _freedom(
     value = float(model.qpos0[model.jnt_qposadr[j]])
     limits = not model.opt.disableflags & int(program.mjtDisableBit.mjDSBL_LIMIT)
     limited = limits and model.jnt_limited[j]
-    low, high = (model.jnt_range[j] - value) if limited else (-np.inf, np.inf)
+    ends = model.jnt_range[j] if limited else np.full(2, np.inf)
+    low, high = np.where(np.abs(ends) < NO_STROKE, ends - value, [-np.inf, np.inf])
     return Freedom(
         kind="slide" if model.jnt_type[j] == int(program.mjtJoint.mjJNT_SLIDE) else "turn",
         name=name,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from gsp.bridges.reading.formats.beside import Beside, read_beside
 from gsp.bridges.reading.formats.sdf_frames import WORLD, Frames, Version, flag, freedoms_of
+from gsp.bridges.reading.formats.ties import check_ties, plugin_couplings
 from gsp.bridges.reading.mechanism.linkages import Coupling, Link, Linkage
 from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import brief, cut
@@ -32,6 +33,7 @@ def read_sdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     model = _model(file)
     version = _version(file)
     _check_parts(file, model)
+    check_ties(file, [*model, *model.iterfind("joint/*")])
     frames = Frames(file, model)
     names = [file.attribute(link, "name") for link in model.iterfind("link")]
     if not names:
@@ -109,12 +111,3 @@ def _couplings(file: XmlFile, model: Node) -> Iterator[Coupling]:
             got = f"<mimic> of {brief(names[1])}"
             yield Coupling(file.where(node), names, got)
     yield from plugin_couplings(file, model.iterfind("plugin"))
-
-
-def plugin_couplings(file: XmlFile, plugins: Iterable[Node]) -> Iterator[Coupling]:
-    """Yield the joints that plugins of Gazebo couple, in SDF and in URDF."""
-    for node in plugins:
-        tied = node.find("mimicJoint")
-        if tied is not None:
-            names = (file.text(node, "joint"), (tied.text or "").strip())
-            yield Coupling(file.where(node), names, f"a plugin of a mimic of {brief(names[1])}")

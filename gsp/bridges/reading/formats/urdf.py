@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,17 +10,16 @@ import numpy as np
 
 from gsp.bridges.links.drives import NO_STROKE
 from gsp.bridges.reading.formats.beside import read_beside
-from gsp.bridges.reading.formats.sdf import plugin_couplings
+from gsp.bridges.reading.formats.ties import check_ties, plugin_couplings
 from gsp.bridges.reading.formats.urdf_loops import gazebo_loops, loops_beside
 from gsp.bridges.reading.mechanism.linkages import Coupling, Freedom, Link, Linkage
 from gsp.bridges.reading.texts.xml_lines import Node, XmlFile
 from gsp.errors import MalformedFile, brief, cut, expected
 from gsp.geometry.pose import Pose
 
-# Elements at the root that tie links or joints: of Drake and of URDF+.
-TIES = re.compile(r"constraint$|coupling|loop|mimic")
 # The keys of limits of a joint, with the number of no limit.
 ENDS = (("lower", -np.inf), ("upper", np.inf))
+COMMAND = "command_interface"
 KINDS = {
     "fixed": (),
     "revolute": ("turn",),
@@ -57,7 +55,7 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     if not loops:
         wanted = "loops beside it in NAME.urdf.loops.json, or joints in <gazebo>"
         raise MalformedFile(expected(str(path), wanted, "none: the legs are open"))
-    _check_ties(file, loops)
+    check_ties(file, list(file.root), loops)
     floating = {x.get("name", "") for x in nodes if x.get("type") == "floating"}
     driven = _driven(file, {x.name for x in joints})
     beside.check_driven(driven)
@@ -74,10 +72,35 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
 
 
 def _driven(file: XmlFile, names: set[str]) -> set[str]:
-    """Return the joints for which the file has a transmission or an interface of commands."""
-    found = file.root.findall("transmission/joint")
+    """Return the joints for which the file has a transmission or an interface of commands.
+
+    Within <ros2_control> not every joint needs a transmission.
+    """
+    commanded = [x for x in file.root.iterfind("ros2_control/joint") if x.find(COMMAND) is not None]
+    found: set[str] = set()
+    for nodes, all_of_them in (
+        (file.root.findall("transmission"), True),
+        (commanded, True),
+        (file.root.findall("ros2_control/transmission"), False),
+    ):
+        joints = nodes if nodes is commanded else _with_motors(file, nodes)
+        stated = {file.attribute(node, "name") for node in joints}
+        for name in sorted(stated - names):
+            file.fail(nodes[0], "<joint>", "the name of a joint", brief(name))
+        other = found ^ stated if all_of_them else stated - found
+        for name in sorted(other if found and stated else ()):
+            wanted = "the joints that have an actuator in the rest of the file"
+            got = f"{'none' if name in found else 'one'} for {brief(name)}"
+            file.fail(nodes[0], "", wanted, got)
+        found |= stated
+    return found
+
+
+def _with_motors(file: XmlFile, transmissions: Sequence[Node]) -> list[Node]:
+    """Return the joints of transmissions, each of which must have an actuator of its own."""
+    found: list[Node] = []
     motors: set[str] = set()
-    for node in file.root.iterfind("transmission"):
+    for node in transmissions:
         joints, own = node.findall("joint"), node.findall("actuator")
         if len(joints) > max(1, len(own)):
             file.fail(node, "<actuator>", f"one for each of {len(joints)} joints", f"{len(own)}")
@@ -85,12 +108,8 @@ def _driven(file: XmlFile, names: set[str]) -> set[str]:
             if motor in motors:
                 file.fail(node, "<actuator>", "one of no other transmission", brief(motor))
             motors.add(motor)
-    for node in file.root.iterfind("ros2_control/joint"):
-        found += [node] if node.find("command_interface") is not None else []
-    for node in found:
-        if file.attribute(node, "name") not in names:
-            file.fail(node, "name", "the name of a joint", brief(node.get("name")))
-    return {file.attribute(node, "name") for node in found}
+        found += joints
+    return found
 
 
 def _stated(link: Link, driven: set[str]) -> Link:
@@ -112,16 +131,6 @@ def _couplings(file: XmlFile) -> Iterator[Coupling]:
             names = (file.attribute(node, "name"), (param.text or "").strip())
             yield Coupling(file.where(node), names, f"a mimic of {brief(names[1])}")
     yield from plugin_couplings(file, file.root.iterfind("gazebo/plugin"))
-
-
-def _check_ties(file: XmlFile, loops: Sequence[Link]) -> None:
-    """Raise MalformedFile for elements that tie links or joints, but for tags of known loops."""
-    known = {frozenset((loop.parent, loop.child)) for loop in loops}
-    for node in file.root:
-        tag = node.tag.rpartition("}")[2] if isinstance(node.tag, str) else ""
-        ends = frozenset(x.get("name", "") for x in node if "_body_" in str(x.tag))
-        if TIES.search(tag) and ends not in known:
-            file.fail(node, "", "no constraints but loops, in the file beside it or <gazebo>", tag)
 
 
 def _tree(file: XmlFile, names: list[str]) -> tuple[dict[str, Pose], list[Link]]:

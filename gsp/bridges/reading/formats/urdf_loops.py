@@ -56,9 +56,14 @@ def gazebo_loops(
             file.fail(asked, key, "the name of a link or joint", brief(name))
         return frames[name]
 
+    held = False
     for node in nodes:
         ends = [file.text(node, tag) for tag in ("parent", "child")]
-        if WORLD not in places and node.get("type") == "fixed" and {*ends} == {WORLD, root}:
+        if WORLD not in places and WORLD in ends:
+            if node.get("type") != "fixed" or root not in ends or held:
+                wanted = f"one fixed joint at most of the world, with the root {brief(root)}"
+                file.fail(node, "", wanted, " and ".join(map(brief, ends)))
+            held = True
             continue
         for tag, name in zip(("parent", "child"), ends, strict=True):
             if name not in places:

@@ -75,10 +75,10 @@ def leg_of(path: Path, number: int, size: float) -> FoundLeg:
         if turn is None:
             raise InvalidInput(expected(where, "a turn beside the slide between two lines", "none"))
         driven = driven_of_two(path.freedoms, slide, turn, where)
-        return _between_lines(base, platform, slide, turn, u, length, driven)
+        return _between_lines(base, platform, slide, turn, u, length, driven, where)
     check_driven(path.freedoms, slide, where)
     names = {(False, False): "D1", (False, True): "D2", (True, False): "D3"}
-    stroke = _stroke(slide, length, float(slide.axis @ u))
+    stroke = _stroke(slide, length, float(slide.axis @ u), where)
     return FoundLeg(names[lines], base, platform, [stroke])
 
 
@@ -97,12 +97,13 @@ def _between_lines(
     u: Array,
     length: float,
     driven: Sequence[Freedom],
+    where: str,
 ) -> FoundLeg:
     normal = cross(base.line, platform.line)
     angle = float(np.arctan2(norm(normal), base.line @ platform.line))
     strokes = {
-        "D4": (slide, _stroke(slide, length, float(slide.axis @ u))),
-        "A1": (turn, _stroke(turn, angle, float(turn.axis @ normal))),
+        "D4": (slide, _stroke(slide, length, float(slide.axis @ u), where)),
+        "A1": (turn, _stroke(turn, angle, float(turn.axis @ normal), where)),
     }
     found = {name: stroke for name, (freedom, stroke) in strokes.items() if freedom in driven}
     return FoundLeg(" ".join(found), base, platform, list(found.values()))
@@ -128,8 +129,12 @@ def _segment(
     return u, abs(along)
 
 
-def _stroke(freedom: Freedom, value: float, sign: float) -> tuple[float, float]:
-    """Return the limits of an actuated joint; NaN for none."""
+def _stroke(freedom: Freedom, value: float, sign: float, where: str) -> tuple[float, float]:
+    """Return the limits of an actuated joint; NaN for none, and none of them negative."""
     ends = (freedom.low, freedom.high) if sign >= 0.0 else (-freedom.high, -freedom.low)
     low, high = (value + x if np.isfinite(x) else np.nan for x in ends)
+    if high < 0.0:
+        what = "length" if freedom.kind == "slide" else "angle"
+        got = f"limits of {brief(freedom.name)} from {low:g} to {high:g}, counted by that {what}"
+        raise InvalidInput(expected(where, f"limits that a {what} can have", got))
     return (max(low, 0.0) if low == low else low, high)
