@@ -82,6 +82,9 @@ CALLS = {
     "gsp.exploration.optimisation.optimising.optimise": lambda p: exploration.optimise(
         SPACE, TASK, evaluations=2, starts=1, **p
     ),
+    "gsp.kinematics.nearest_pose.nearest": lambda p: gsp.nearest(
+        DESIGN, HOME, gsp.Limits(position=[None, None, (None, HOME.position[2] - 1e-3)]), **p
+    ),
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
     "gsp.proof.boxes.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
     "gsp.proof.maximum.certify_maximum": lambda p: gsp.certify_maximum(PLATFORM, **p),

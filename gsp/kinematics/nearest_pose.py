@@ -29,7 +29,7 @@ from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import DIFFERENCE_STEP
 from gsp.model.design import Design
-from gsp.progress import Progress, meter
+from gsp.progress import Progress, check_progress, meter
 
 # By how much the nearest pose may violate a limit: distances as a share of the size, indices as one
 # of their threshold, angles as they are.
@@ -145,6 +145,7 @@ def nearest(
         raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
     number, generator = check_integer("starts", starts), check_rng("rng", rng)
     check_memory("starts", number, POSE_BYTES, "poses")
+    check_progress(progress)
     given = Limits() if limits is None else limits
     bounded_quantities(
         design, given, crossed=True, driven=True
