@@ -245,7 +245,7 @@ WRONG = {
     "axis": ("urdf", '<axis xyz="0.0 0.0 1.0"', '<axis xyz="0 0 0"',
              "<axis> xyz: expected a direction other than zero"),
     "sdf child": ("sdf", "<child>leg2_upper</child>", "<child>nobody</child>",
-                  r"line \d+, <joint name=.d2.>, <child>: expected the name of a link"),
+                  r"line \d+, <joint name=.d2.>, <child>: expected a link of the model"),
     "sdf kind": ("sdf", 'name="d1" type="prismatic"', 'name="d1" type="screw"',
                  r"line \d+, <joint name=.d1.>, type: expected one of"),
     "sdf axis": ("sdf", "<xyz>0.0 0.0 1.0</xyz>", "<xyz>0 0</xyz>",

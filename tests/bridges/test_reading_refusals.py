@@ -11,6 +11,7 @@ from gsp.bridges import export, read_model
 from gsp.bridges.exports import SUFFIXES
 from gsp.errors import MalformedFile
 from gsp.geometry.pose import Pose
+from tests import driven
 from tests.bridges.test_reading import LIFT, foreign_mjcf, foreign_sdf, ring
 
 GEOM = '<geom size="0.1"/>'
@@ -275,7 +276,8 @@ def test_transmissions_of_urdf_state_what_is_driven(tmp_path):
     beside = tmp_path / "lift.urdf.loops.json"
     loops = {"loops": json.loads(beside.read_text())["loops"]}
     beside.write_text(json.dumps(loops))
-    words = [f'<transmission name="t{i}"><joint name="d{i}"/></transmission>' for i in range(1, 7)]
+    motor = '<transmission name="t{0}"><joint name="d{0}"/><actuator name="m{0}"/></transmission>'
+    words = [motor.format(i) for i in range(1, 7)]
     assert_anchors(read_model(path))
     text = without_transmissions(path.read_text())
     path.write_text(edited(text, ("</robot>", "".join(words) + "</robot>")))
@@ -352,6 +354,36 @@ def test_limits_that_no_length_can_have_are_named(form, tmp_path):
     assert_refused(tmp_path, path.name, text, message)
 
 
+@pytest.mark.parametrize(
+    ("limits", "stroke"),
+    [("2.5 3.5", None), ("-9 -8", None), ("-7 7", (0.0, np.pi)), ("-0.1 0.2", (-0.1, 0.2))],
+)
+def test_limits_that_no_angle_can_have(limits, stroke, tmp_path):
+    """The angle of an A1 leg is in (0, π); limits of the file count from its configuration."""
+    design = driven.of_five_legs()
+    angle = float(design.at(design.home).joints[-1])
+    path = exported("urdf", tmp_path, design.replace(strokes=[*[(np.nan,) * 2] * 5, (0.0, np.pi)]))
+    low, high = limits.split()
+    turn = r'(<joint name="theta5".*?)lower="[^"]*" upper="[^"]*"'
+    text = edited(path.read_text(), (turn, rf'\1lower="{low}" upper="{high}"'))
+    if stroke is None:
+        message = "leg 5 .*: expected limits that an angle can have, received limits of 'theta5'"
+        assert_refused(tmp_path, path.name, text, message)
+        return
+    path.write_text(text)
+    wanted = stroke if stroke == (0.0, np.pi) else angle + np.array(stroke)
+    np.testing.assert_allclose(read_model(path).strokes[-1], wanted, atol=1e-9)
+
+
+def test_infinite_ends_of_ranges_of_mjcf(tmp_path):
+    path = exported("mjcf", tmp_path, LIFT.replace(strokes=[(0.1, 9.0)] * 6))
+    joint = r'(<joint name="d3"[^>]*?)range="[^"]*"'
+    path.write_text(edited(path.read_text(), (joint, r'\1range="-inf 9"')))
+    np.testing.assert_array_equal(np.isnan(read_model(path).strokes[2]), [True, False])
+    text = edited(path.read_text(), (joint, r'\1range="nan 9"'))
+    assert_refused(tmp_path, path.name, text, "range: expected numbers, received 'nan 9'")
+
+
 @pytest.mark.parametrize("form", ["mjcf", "urdf", "sdf"])
 def test_strokes_with_one_end_are_read_back(form, tmp_path):
     strokes = [(np.nan, 2.5), (1.2, np.nan), (np.nan, np.nan), (1.0, 3.0), (1.5, 2.2), (0.5, 5.0)]
@@ -373,9 +405,11 @@ def test_joints_of_sdf_between_frames(holder, tmp_path):
     text = f'{start}<joint name="leg2_base"{end}'
     path.write_text(text)
     assert_anchors(read_model(path))
+    path.write_text(text.replace("<parent>leg2_lower<", "<parent>leg2_base<"))
+    assert_anchors(read_model(path))
     for attached in ("tip", "nowhere"):
         wrong = text.replace(f'"top" attached_to="{holder}"', f'"top" attached_to="{attached}"')
-        message = "a link, joint or frame of the model|the name of a link of the model, or"
+        message = "a link, joint or frame of the model|a link of the model, or a frame or joint"
         assert_refused(tmp_path, path.name, wrong, message)
 
 
@@ -428,7 +462,9 @@ SAME_MOTOR = '<transmission><joint name="d{}"/><actuator name="d1_actuator"/></t
 CONTROL = """<ros2_control><joint name="d2"><param name="mimic">d1</param></joint>
     </ros2_control>"""
 CONTROL_OF_ONE = '<ros2_control><joint name="d1"><command_interface/></joint></ros2_control>'
-INNER = """<ros2_control><transmission><joint name="leg1_base_x"/></transmission></ros2_control>"""
+INNER = """<ros2_control><transmission><joint name="leg1_base_x"/><actuator name="m"/>
+    </transmission></ros2_control>"""
+IDLE = '<transmission><joint name="d1"/></transmission>'
 PLUGIN = """<gazebo><plugin filename="libmimic.so"><joint>d1</joint><mimicJoint>d2</mimicJoint>
     </plugin></gazebo>"""
 HELD = """<drake:ball_constraint name="held"><drake:ball_constraint_body_A name="base"/>
@@ -439,6 +475,7 @@ HELD = """<drake:ball_constraint name="held"><drake:ball_constraint_body_A name=
     ("element", "message"),
     [
         (f"<transmission>{ONE_MOTOR}</transmission>", "<actuator>: expected one for each of 2 joi"),
+        (IDLE, "<actuator>: expected one for the joint, received 0"),
         (SAME_MOTOR.format(2), "<actuator>: expected one of no other transmission"),
         (CONTROL, "a mimic of 'd1'"),
         (PLUGIN, "a plugin of a mimic of 'd2'"),

@@ -87,7 +87,7 @@ def read_mjcf(path: Path, base: str = "", platform: str = "") -> Linkage:
 
 
 def _check_numbers(path: Path, seen: set[Path]) -> None:
-    """Raise MalformedFile for an attribute without numbers, or with NaN or infinite ones.
+    """Raise MalformedFile for an attribute without numbers, with NaN, or infinite but for limits.
 
     An empty `anchor` ends MuJoCo 3 and 4 with an error after which it loads no further model in
     the same process: the next call waits without end. NaN is not named by MuJoCo.
@@ -108,8 +108,9 @@ def _check_attribute(file: XmlFile, node: Node, key: str, text: str) -> None:
     parts = text.split()
     if not parts:
         file.fail(node, key, "numbers", "an empty text")
-    if not all(abs(number_of(part)) <= LARGEST_NUMBER for part in parts):
-        file.fail(node, key, "finite numbers", brief(text))
+    most = np.inf if key == "range" else LARGEST_NUMBER
+    if not all(abs(number_of(part)) <= most for part in parts):
+        file.fail(node, key, "numbers" if key == "range" else "finite numbers", brief(text))
 
 
 def _free_body(program: Any, model: mujoco.MjModel, names: list[str]) -> str:

@@ -128,14 +128,14 @@ class Frames:
         while name != WORLD and (known := self._nodes.get(name)) is not None:
             if known.tag == "link":
                 return name
-            if name in seen or (known.tag == "joint" and not seen):
+            if name in seen:
                 break
             seen.add(name)
             name = known.get("attached_to", "") or self._canonical
             if known.tag == "joint":
                 name = self._file.text(known, "child")
         if name != WORLD:
-            wanted = "the name of a link of the model, or of a frame that is attached to one"
+            wanted = "a link of the model, or a frame or joint that is attached to one"
             self._file.fail(asked, f"<{tag}>", wanted, brief(name))
         return name
 

@@ -102,8 +102,9 @@ def _with_motors(file: XmlFile, transmissions: Sequence[Node]) -> list[Node]:
     motors: set[str] = set()
     for node in transmissions:
         joints, own = node.findall("joint"), node.findall("actuator")
-        if len(joints) > max(1, len(own)):
-            file.fail(node, "<actuator>", f"one for each of {len(joints)} joints", f"{len(own)}")
+        if len(joints) > len(own):
+            count = "the joint" if len(joints) == 1 else f"each of {len(joints)} joints"
+            file.fail(node, "<actuator>", f"one for {count}", f"{len(own)}")
         for motor in {x.get("name", "") for x in own} - {""}:
             if motor in motors:
                 file.fail(node, "<actuator>", "one of no other transmission", brief(motor))

@@ -130,11 +130,12 @@ def _segment(
 
 
 def _stroke(freedom: Freedom, value: float, sign: float, where: str) -> tuple[float, float]:
-    """Return the limits of an actuated joint; NaN for none, and none of them negative."""
+    """Return the limits of an actuated joint within what it can have; NaN for none."""
     ends = (freedom.low, freedom.high) if sign >= 0.0 else (-freedom.high, -freedom.low)
     low, high = (value + x if np.isfinite(x) else np.nan for x in ends)
-    if high < 0.0:
-        what = "length" if freedom.kind == "slide" else "angle"
-        got = f"limits of {brief(freedom.name)} from {low:g} to {high:g}, counted by that {what}"
-        raise InvalidInput(expected(where, f"limits that a {what} can have", got))
-    return (max(low, 0.0) if low == low else low, high)
+    what, most = ("a length", np.inf) if freedom.kind == "slide" else ("an angle", np.pi)
+    if high < 0.0 or low > most:
+        got = f"limits of {brief(freedom.name)} from {low:g} to {high:g}, counted by it"
+        raise InvalidInput(expected(where, f"limits that {what} can have", got))
+    # Comparisons with NaN are false, so that it stays.
+    return (0.0 if low < 0.0 else low, most if high > most else high)
