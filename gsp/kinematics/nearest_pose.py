@@ -114,7 +114,8 @@ def nearest(
         Generator or seed of the random starts.
     progress : function (done, total), bool or None
         Called with the number of searches; see `gsp.evaluate`. They take a second together as a
-        rule, a minute or two with thresholds on indices of redundant designs or drives.
+        rule; a minute or two may pass where few poses or none satisfy thresholds on indices, and
+        with such thresholds for redundant designs or drives.
 
     Returns
     -------

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 FILM_DPI = 100
 # Megabytes of the pictures in a page, of which matplotlib drops what is beyond.
 LARGEST_PAGE = 500.0
-# Seconds per picture that a GIF can state, in hundredths of a second. Programs show pictures of
-# less than 0.02 s for 0.1 s.
-GIF_SECONDS = (0.02, 655.35)
+# Programs show a picture of less than this for 0.1 s [s], and a GIF can state no longer time than
+# that, in hundredths of a second, of one picture, or of all of them if they are equal.
+GIF_LEAST, GIF_MOST = 0.02, 655.35
 GIF_DIGITS = 9  # of a time per picture
 # The writer of matplotlib for each kind of file.
 WRITERS = MappingProxyType({".gif": "pillow", ".html": "html", ".mp4": "ffmpeg"})
@@ -75,8 +75,8 @@ class Film(ReadOnly):
         Raises
         ------
         InvalidInput
-            On another suffix, or for a GIF whose pictures would last less than 0.02 s or more than
-            655.35 s each.
+            On another suffix, or for a GIF of more than 655.35 s, or with less than 0.02 s for each
+            picture.
         UnwritableOutput
             If the file exists and `overwrite` is not set, or it cannot be written.
         MissingSoftware
@@ -90,10 +90,9 @@ class Film(ReadOnly):
 
     def _check_rate(self, suffix: str) -> None:
         """Raise InvalidInput for a GIF in which pictures would last for another time."""
-        each = self.seconds / self.frames
-        low, high = GIF_SECONDS
-        if suffix == ".gif" and not low <= round(each, GIF_DIGITS) <= high:
-            ends = f"{low * self.frames:g} to {high * self.frames:g}"
+        short = round(self.seconds / self.frames, GIF_DIGITS) < GIF_LEAST
+        if suffix == ".gif" and (short or self.seconds > GIF_MOST):
+            ends = f"{GIF_LEAST * self.frames:g} to {GIF_MOST:g}"
             wanted = f"{ends} for a GIF of {self.frames} pictures"
             raise InvalidInput(expected("seconds", wanted, f"{self.seconds:g}"))
 

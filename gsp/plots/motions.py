@@ -13,7 +13,7 @@ from gsp import arguments
 from gsp.bridges import Solids, render_motion
 from gsp.checks import check_items, check_type, is_a
 from gsp.determinant import Maximum
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, UndefinedPosture, brief, expected
 from gsp.figures import INK, require_matplotlib, style
 from gsp.geometry.copies import ReadOnly, read_only
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -153,11 +153,7 @@ def _film(
     shown = np.unique(np.linspace(0, n - 1, min(most, n)).round().astype(int))
     columns = [] if table is None else index_columns(table)
     solid = renderer == "mujoco"
-    pictures = (
-        render_motion(design, path.pose[shown], solids, width=WIDTH, height=HEIGHT)
-        if solid
-        else None
-    )
+    pictures = _rendered(design, path.pose, shown, solids) if solid else None
     figure, space, curves = film_panels(len(columns), flat=solid)
     for name, ax in zip(columns, curves, strict=True):
         along(table, name, ax)
@@ -177,6 +173,17 @@ def _film(
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     return Film(figure, len(shown), seconds, show)
+
+
+def _rendered(
+    design: Design, poses: Pose, shown: NDArray[np.int64], solids: Solids | None
+) -> NDArray[np.uint8]:
+    """Return pictures by MuJoCo of some of the poses; errors have the numbers of these."""
+    try:
+        return render_motion(design, poses[shown], solids, width=WIDTH, height=HEIGHT)
+    except UndefinedPosture as error:
+        where = [one._replace(pose=(int(shown[one.pose[0]]),)) for one in error.undefined]
+        raise UndefinedPosture(design.name, where) from error
 
 
 class _Scene:

@@ -132,13 +132,22 @@ def test_a_gif_lasts_as_long_as_the_film(seconds, frames, tmp_path):
     assert max(times) - min(times) <= 10
 
 
-@pytest.mark.parametrize(("seconds", "frames"), [(1e9, 3), (0.03, 3), (0.5, 60)])
+@pytest.mark.parametrize(("seconds", "frames"), [(1e9, 3), (700.0, 3), (0.03, 3), (0.5, 60)])
 def test_times_that_a_gif_cannot_state(seconds, frames, tmp_path):
     path = gsp.sweeps.turn(LIFT.home, "z", np.linspace(0.0, 30.0, frames))
     film = gsp.plots.animate(LIFT, path, frames=frames, seconds=seconds)
     with pytest.raises(InvalidInput, match=f"seconds: expected .* for a GIF of {frames} pictures"):
         film.save(tmp_path / "a.gif")
     assert not list(tmp_path.iterdir())
+
+
+def test_equal_pictures_last_together(tmp_path):
+    """They are one picture of the file."""
+    film = gsp.plots.animate(LIFT, gsp.Pose([LIFT.home.position] * 3), seconds=655.35)
+    film.save(tmp_path / "a.gif")
+    with Image.open(tmp_path / "a.gif") as picture:
+        assert picture.n_frames == 1
+        assert picture.info["duration"] == 655350
 
 
 def test_what_only_indices_use_is_refused_without_them():

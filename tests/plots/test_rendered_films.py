@@ -12,7 +12,7 @@ import gsp
 from gsp.bridges.links.linkage import linkage
 from gsp.bridges.mujoco.elements import configuration
 from gsp.bridges.proof import BOX, random_design
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, UndefinedPosture
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -103,3 +103,17 @@ def test_wrong_arguments_are_refused():
         gsp.bridges.render_motion(LIFT, turn.pose, width=5000)
     with pytest.raises(InvalidInput, match="pose: expected a single pose"):
         gsp.bridges.render(LIFT, turn.pose)
+
+
+def test_errors_have_the_number_of_the_pose_in_the_path():
+    """Cranks of a platform that rises do not reach it any more: every tenth pose is shown."""
+    design = gsp.catalogue.design("lane-rotary")
+    steps = np.linspace(0.0, 2.0 * design.rms_radius, 100)[:, None] * [0.0, 0, 1, 0, 0, 0]
+    poses = design.home.moved(steps)
+    with pytest.raises(UndefinedPosture, match="of lane-rotary at pose ") as error:
+        gsp.plots.animate(design, poses, renderer="mujoco", frames=12)
+    (number,) = error.value.undefined[0].pose
+    assert number in np.linspace(0, 99, 12).round()
+    assert np.isnan(design.at(poses[number]).joints).any()
+    before = design.at(poses[: number - 9]).joints
+    assert np.isfinite(before).all()

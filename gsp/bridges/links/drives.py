@@ -133,6 +133,9 @@ def check_within(design: Design, what: str, joints: Array) -> None:
     angles = design.angular & ~cranks(design)
     low = np.where(angles | ~np.asarray(design.signed), np.maximum(low, 0.0), low)
     high = np.where(angles, np.minimum(high, np.pi), high)
+    # So is the angle of a crank in (−π, π], where it does not turn round without end.
+    ended = cranks(design) & np.isfinite((low, high)).any(axis=0)
+    low, high = np.where(ended, np.clip((low, high), -np.pi, np.pi), (low, high))
     for row in np.flatnonzero((joints < low - margin) | (joints > high + margin)):
         name = design.joint_names[row]
         wanted = f"{name} within its stroke or range, {low[row]:g} to {high[row]:g}"

@@ -11,12 +11,12 @@ import numpy as np
 
 from gsp.checks import optional
 from gsp.errors import GspError, InvalidInput, brief, expected
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.vectors import Array, Mask, norm
 
 if TYPE_CHECKING:
     import mujoco
 
-LENGTHS_PER_LOOP = 3
+AXES = 3
 
 
 def load_mujoco() -> Any:
@@ -64,15 +64,27 @@ def largest_gap(data: mujoco.MjData) -> float:
     return max(float(gaps.max()), float(turns.max(initial=0.0)))
 
 
-def gaps_of(data: mujoco.MjData) -> tuple[Array, Array]:
-    """Return how far loops are open: distances [m], and angles of the welds [rad]."""
-    loop = loop_rows(data)
-    violations, which = np.abs(data.efc_pos[loop]), data.efc_id[loop]
-    # The rows of a loop follow each other: three lengths, then for a weld a vector of sin(angle/2).
-    turn = np.arange(which.size) - np.searchsorted(which, which) >= LENGTHS_PER_LOOP
-    return violations[~turn], 2.0 * np.arcsin(np.minimum(violations[turn], 1.0))
-
-
 def loop_rows(data: mujoco.MjData) -> Mask:
     """Return which rows of the constraints close loops (the others are limits of joints)."""
     return np.asarray(data.efc_type == load_mujoco().mjtConstraint.mjCNSTR_EQUALITY)
+
+
+def gaps_of(data: mujoco.MjData) -> tuple[Array, Array]:
+    """Return how far loops are open: distances [m], and angles of the welds [rad]."""
+    loop = loop_rows(data)
+    violations, which = data.efc_pos[loop], data.efc_id[loop]
+    # The rows of a loop follow each other: a distance, then for a weld an axis times sin(angle/2).
+    turn = np.arange(which.size) - np.searchsorted(which, which) >= AXES
+    gaps, sines = (norm(violations[rows].reshape(-1, AXES)) for rows in (~turn, turn))
+    return gaps, 2.0 * np.arcsin(np.minimum(sines, 1.0))
+
+
+def largest_speed(model: mujoco.MjModel, data: mujoco.MjData) -> float:
+    """Return the largest speed of the joints of legs [m/s, or rad/s]; the platform has none."""
+    kinds = load_mujoco().mjtJoint
+    speeds = [0.0]
+    for joint, first in enumerate(model.jnt_dofadr):
+        ball = model.jnt_type[joint] == int(kinds.mjJNT_BALL)
+        if model.jnt_type[joint] != int(kinds.mjJNT_FREE):
+            speeds.append(float(norm(data.qvel[first : first + (AXES if ball else 1)])))
+    return max(speeds)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,12 +12,19 @@ from gsp import arguments
 from gsp.bridges.links.drives import check_within, cranks
 from gsp.bridges.links.solids import Solids, check_solids
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
-from gsp.bridges.mujoco.program import compiled, gaps_of, largest_gap, load_mujoco, silent
+from gsp.bridges.mujoco.program import (
+    compiled,
+    gaps_of,
+    largest_gap,
+    largest_speed,
+    load_mujoco,
+    silent,
+)
 from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import FailedComputation, InvalidInput, apart, expected
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.design.checks import open_strokes
 from gsp.progress import Progress, meter
@@ -30,9 +38,9 @@ MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
 # Open loops, as a share of the size or in rad, above which a state is none of the design. Under
 # gravity, held or moved to what can be reached, they are open by less than 1e-4.
 OPEN_LOOP = 3e-4
-# How much drives may differ from those of the pose on their branches, in sizes or rad: near a dead
-# centre as the root of what the loops are open.
-OTHER_BRANCH = 3.0 * OPEN_LOOP**0.5
+# How near the branches of a drive are to each other where it is not decided on which it is, over
+# the root of a gap, all in sizes or rad.
+DEAD_CENTRE = 4.0
 
 
 @read_only_tuple
@@ -47,9 +55,9 @@ class Simulation(NamedTuple):
         Joint variables, in the order of `design.joint_names`. They differ from the targets by what
         the servos give way to the weight of the links, and by what the legs cannot reach together.
     gap : float
-        Largest violation of a loop [m, or rad], by the compliance of MuJoCo's constraints.
+        How far the most open loop is open [m, or rad], by the compliance of MuJoCo's constraints.
     speed : float
-        Largest speed of a joint of a leg that is left [m/s, rad/s].
+        Largest speed of a joint of a leg that is left [m/s, rad/s]; of a ball that of its turn.
     """
 
     pose: Pose
@@ -100,11 +108,12 @@ def simulate(
         If MuJoCo is not installed.
     FailedComputation
         If the motion becomes unstable in MuJoCo, or ends with loops that are open by more than
-        3e-4 of the size of the design (rms_radius) or 3e-4 rad, as with targets that the legs
-        cannot reach together, or with a drive at the base on its other branch.
+        3e-4 of the size of the design (rms_radius) or 3e-4 rad, or with a drive at the base on its
+        other branch. Targets that the legs cannot reach together may lead there; else the servos
+        give way, and `joints` are not the targets.
     InvalidInput
         If the pose or `joints` is beyond the strokes of the design, or a target is negative for a
-        distance, or outside [0, π] for an angle between lines.
+        distance, or outside [0, π] for an angle between lines or [−π, π] for a crank with a stroke.
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
 
@@ -149,19 +158,14 @@ def simulate(
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos / metres, np.roll(placed.xquat, -1))
     reached = _in_one_turn(design, np.array(data.actuator_length)) / scale
-    _check_branches(design, found, reached)
+    gap = largest_gap(data)
+    _check_branches(design, found, reached, gap / (design.rms_radius * metres))
     return Simulation(
         found.compose(Pose(-centre)),
         reached,
-        largest_gap(data),
-        float(np.abs(data.qvel[_legs(model)]).max()),
+        gap,
+        largest_speed(model, data),
     )
-
-
-def _legs(model: mujoco.MjModel) -> Mask:
-    """Return which velocities are those of joints of legs, not of the platform in space: (nv,)."""
-    free = load_mujoco().mjtJoint.mjJNT_FREE
-    return np.asarray(model.jnt_type[model.dof_jntid] != int(free))
 
 
 def _check_closed(data: mujoco.MjData, longest: float) -> None:
@@ -177,11 +181,25 @@ def _check_closed(data: mujoco.MjData, longest: float) -> None:
             raise FailedComputation(expected("simulate", wanted, got))
 
 
-def _check_branches(design: Design, pose: Pose, joints: Array) -> None:
-    """Raise FailedComputation if a drive has passed a dead centre, to its other branch."""
+def _check_branches(design: Design, pose: Pose, joints: Array, gap: float) -> None:
+    """Raise FailedComputation if a joint value is that of the other branch of its drive.
+
+    `gap` is how far loops are open, in sizes: next to a dead centre the two branches are as near to
+    each other as its root.
+    """
+    if not design.driven:
+        return
+    legs = [
+        leg if leg.drive is None else replace(leg.drive, branch=-leg.drive.branch)
+        for leg in design.legs
+    ]
     scale = np.where(design.angular, 1.0, design.rms_radius)
-    apart_by = _in_one_turn(design, joints - design.at(pose).joints) / scale
-    for row in np.flatnonzero(np.abs(apart_by) > OTHER_BRANCH):
+    own, other = (one.at(pose).joints for one in (design, design.replace(legs=legs)))
+    away, there, between = (
+        np.abs(_in_one_turn(design, difference)) / scale
+        for difference in (joints - own, joints - other, own - other)
+    )
+    for row in np.flatnonzero((there < away) & (between > DEAD_CENTRE * gap**0.5)):
         wanted = "a motion on which drives keep their branches"
         got = f"one on which {design.joint_names[row]} passed a singular posture of its drive"
         raise FailedComputation(expected("simulate", wanted, got))

@@ -204,8 +204,12 @@ def _text(question: str, **options: Any) -> str:
 
 
 def _yes(question: str) -> bool:
-    with waiting.question():
-        return typer.confirm(question, default=False)
+    """Return whether the answer is yes; what is neither yes nor no is asked again."""
+    while True:
+        answer = _text(f"{question} [y/N]", default="", show_default=False).strip().lower()
+        if answer in ("y", "yes", "n", "no", ""):
+            return answer.startswith("y")
+        warn(expected("answer", "y or n", brief(answer)))
 
 
 def _check_strokes(strokes: tuple[float, float]) -> None:
