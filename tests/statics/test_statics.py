@@ -78,6 +78,21 @@ def test_actuator_forces_do_not_depend_on_frames_and_units(unit, shift):
     assert np.allclose(theirs, expected, rtol=1e-9 if shift else 1e-12, atol=0.0)
 
 
+def test_a_singular_posture_in_a_batch_changes_no_other_forces():
+    lift = gsp.hexapod(1.0, 0.4, 0.6, 0.4, 1.2)
+    poses = lift.home.moved(0.1 * np.random.default_rng(0).normal(size=(20, 6)))
+    flat = gsp.Pose(
+        np.concatenate((poses.position, [[0.0, 0.0, 0.0]])),
+        np.concatenate((poses.rotation, np.eye(3)[None])),
+    )
+    wrench = np.arange(1.0, 7.0)
+    forces = lift.at(flat).actuator_forces(wrench)
+    assert np.isnan(forces[-1]).all()
+    np.testing.assert_array_equal(forces[:-1], lift.at(poses).actuator_forces(wrench))
+    np.testing.assert_array_equal(forces[3], lift.at(poses[3]).actuator_forces(wrench))
+    np.testing.assert_allclose(lift.at(poses).wrench(forces[:-1]), [-wrench] * 20, rtol=1e-11)
+
+
 def test_singular_and_undefined_postures_have_no_balance():
     ring = [[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3.0]
     flat = gsp.Design(["D1"] * 6, ring, ring)
