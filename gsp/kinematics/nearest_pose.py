@@ -15,7 +15,6 @@ from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, norm
-from gsp.kinematics.driven.reach import crank_bounds, reaches
 from gsp.kinematics.feasible_descent import (
     Functions,
     corrected,
@@ -26,6 +25,7 @@ from gsp.kinematics.feasible_descent import (
 from gsp.kinematics.modes import assembly_modes
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
+from gsp.limits.legs import crank_bounds, reaches
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import DIFFERENCE_STEP
 from gsp.model.design import Design

@@ -13,12 +13,12 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.kinematics.driven.reach import crank_bounds
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
 from gsp.kinematics.newton.control import PROVEN_SHARE
 from gsp.kinematics.newton.stages import bend
 from gsp.kinematics.travel_paths import TravelPath
+from gsp.limits.legs import crank_bounds
 from gsp.model.design import Design
 from gsp.model.design.checks import check_strokes, open_strokes
 

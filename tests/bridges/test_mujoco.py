@@ -247,6 +247,29 @@ def test_a_crank_with_one_end_of_its_stroke_turns_within_it():
     assert _changes(ended, np.where(np.arange(6) == 4, -2.9, theta), theta)[4] == -5.9
 
 
+@pytest.mark.parametrize("kind", ["D1", "D4", "D4 A1"])
+@pytest.mark.parametrize("rod", [4.0, 40.0])
+def test_a_slider_beside_legs_of_other_kinds_keeps_its_branch(kind, rod):
+    """Welds are open by angles, which say nothing of lengths: a machine of 50 mm."""
+    lift = gsp.hexapod(60.0, 20.0, 40.0, 30.0, 52.0, degrees=True, unit="mm")
+    heads = lift.home.position + lift.platform_points
+    along = heads[0] - lift.base_points[0]
+    along /= np.linalg.norm(along)
+    rng = np.random.default_rng(0)
+    rails = [0.0, 0.0, 1.0] + 0.3 * rng.normal(size=(6, 3))
+    lines = [1.0, 0.0, 0.0] + 0.3 * rng.normal(size=(6, 3))
+    rails[0] = np.cross(along, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(along, [0.0, 0.0, 1.0]))
+    share = 0.5 if rod < 10.0 else 0.1
+    base = lift.base_points.copy()
+    base[0] = heads[0] - along * rod * np.sqrt(1.0 - share**2)
+    legs = [Slider(rod=rod), *[kind] * 5]
+    design = gsp.Design(legs, base, lift.platform_points, rails, lines, unit="mm", home=lift.home)
+    joints = design.at(design.home).joints * [-1.0, *np.ones(len(design.joint_names) - 1)]
+    simulate(design, design.home, duration=0.5)
+    with pytest.raises(FailedComputation, match="d1 passed a singular posture of its drive"):
+        simulate(design, design.home, joints)
+
+
 @pytest.mark.parametrize("rod", [0.01, 0.05, 0.3])
 def test_a_motion_to_the_other_branch_of_a_drive_is_refused(rod):
     """A carriage passes below its anchor, to where the rod leans back as it leant forward."""

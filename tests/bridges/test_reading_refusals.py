@@ -44,6 +44,10 @@ def exported(form, folder, design=LIFT):
     return path
 
 
+def without_balls(text):
+    return re.sub("<drake:ball_constraint .*?</drake:ball_constraint>", "", text, flags=re.DOTALL)
+
+
 # Loops that the file has open.
 
 
@@ -56,7 +60,7 @@ def test_the_gap_of_a_fixed_loop_does_not_move_anchors(tmp_path):
     found = read_model(path)
     assert_anchors(found)
     assert found.home.position[2] == 1.75
-    path.write_text(text)
+    path.write_text(without_balls(text))  # which would contradict the file beside it
     content = json.loads(beside.read_text())
     for loop in content["loops"]:
         loop["position"][2] += 0.25
@@ -507,6 +511,51 @@ def test_flags_of_mujoco(tmp_path):
     assert np.isfinite(read_model(path).strokes).all()
     (tmp_path / "free.xml").write_text(flagged("limit"))
     assert read_model(tmp_path / "free.xml").strokes is None
+
+
+BALL = """<drake:ball_constraint name="more"><drake:ball_constraint_body_A name="leg1_upper"/>
+    <drake:ball_constraint_p_AP value="0 0 -0.2"/><drake:ball_constraint_body_B name="platform"/>
+    <drake:ball_constraint_p_BQ value="{}"/></drake:ball_constraint></robot>"""
+
+
+def test_balls_of_drake_must_be_those_of_the_loops(tmp_path):
+    """A point of a fixed loop may be anywhere, if it is the same of both links; not of a ball."""
+    path = exported("urdf", tmp_path)
+    text = path.read_text()
+    moved = re.sub(r'(constraint_p_BQ value=")[^ ]*', r"\g<1>0.5", text)
+    assert_refused(tmp_path, path.name, moved, "expected a point that 'loop leg1' holds as well")
+    (tmp_path / "lift.urdf.loops.json").unlink()
+    joints = ""
+    for i, b in enumerate(LIFT.platform_points, 1):
+        joints += f"""<joint name="g{i}" type="ball"><parent>platform</parent>
+          <child>leg{i}_upper</child><pose relative_to="platform">{ring([b])[0]} 0 0 0</pose>
+          </joint>"""
+    text = edited(text, ("<gazebo>.*</gazebo>", f"<gazebo>{joints}</gazebo>"))
+    text = re.sub(r'(constraint_body_A name="leg[0-9]_)platform', r"\1upper", text)
+    path.write_text(text)
+    assert_anchors(read_model(path))
+    leg = LIFT.home.position + LIFT.platform_points[0] - LIFT.base_points[0]
+    below = LIFT.platform_points[0] - 0.2 * leg / np.linalg.norm(leg)
+    hinge = edited(text, ("</robot>", BALL.format(ring([below])[0])))
+    assert_refused(tmp_path, path.name, hinge, "expected a point that 'g1' holds as well")
+
+
+@pytest.mark.parametrize("form", ["mjcf", "sdf"])
+def test_a_crank_that_turns_on_without_an_end_has_no_stroke(form, tmp_path):
+    """With one end in a program it still comes to every angle; one of a design has both."""
+    design = driven.rotary()
+    strokes = [(np.nan, 3.0), (-1.0, np.nan), (-3.5, 4.0), (2.0, 3.0), (2.5, 4.0), (-np.pi, np.pi)]
+    path = exported(form, tmp_path, design.replace(strokes=strokes))
+    found = read_model(path).strokes
+    wanted = [(-np.pi, 3.0), (-1.0, np.pi), (np.nan,) * 2, (2.0, 3.0), (2.5, np.pi), (np.nan,) * 2]
+    np.testing.assert_allclose(found, wanted, atol=1e-9)
+    text = path.read_text()
+    if form == "mjcf":
+        text = edited(text, (r'(name="theta2"[^>]*?range="[^ ]*) [^"]*', r"\1 inf"))
+    else:
+        text = edited(text, (r'(name="theta2".*?)<upper>.*?</upper>', r"\1"))
+    path.write_text(text)
+    assert np.isnan(read_model(path).strokes[1]).all()
 
 
 def test_quaternions_of_urdf_are_read(tmp_path):

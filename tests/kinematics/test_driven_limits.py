@@ -5,9 +5,9 @@ import pytest
 
 import gsp
 from gsp import Crank, Pose
-from gsp.kinematics.driven.reach import crank_bounds, reaches
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import centred
+from gsp.limits.legs import crank_bounds, reaches
 from tests import campaign, driven
 
 SIX = [name for name, design in driven.DESIGNS.items() if len(design.joint_names) == 6]

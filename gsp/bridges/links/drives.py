@@ -15,6 +15,7 @@ from gsp.checks import is_a
 from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
+from gsp.limits.legs import crank_bounds
 from gsp.model.design import Design
 from gsp.model.design.checks import open_strokes
 
@@ -25,9 +26,9 @@ class Drives:
 
     Parameters
     ----------
-    efforts : float, (n,) array_like or None [N, or N m for A1 actuators]
+    efforts : float, (n,) array_like or None [N, or N m for A1 actuators and cranks]
         Greatest force or torque; one number is that of each actuator. None: no limit.
-    speeds : float, (n,) array_like or None [m/s, or rad/s for A1 actuators]
+    speeds : float, (n,) array_like or None [m/s, or rad/s for A1 actuators and cranks]
         Greatest speed; None: no limit.
 
     Raises
@@ -111,9 +112,7 @@ def joint_limits(
     if drives is not None and not is_a(drives, Drives):
         raise InvalidInput(expected("drives", "a Drives or None", type(drives).__name__))
     n = len(design.joint_names)
-    strokes = np.full((n, 2), np.nan) if design.strokes is None else design.strokes
-    strokes = strokes * np.where(design.angular, 1.0, metres)[:, None]
-    strokes = np.where(np.isfinite(strokes), strokes, [-np.inf, np.inf])
+    strokes = joint_ends(design) * np.where(design.angular, 1.0, metres)[:, None]
     rows = (
         strokes[:, 0],
         strokes[:, 1],
@@ -125,17 +124,23 @@ def joint_limits(
     }
 
 
+def joint_ends(design: Design) -> Array:
+    """Return the strokes of the actuated joints (n, 2), infinite for no end [unit, rad].
+
+    The angle of a crank is in (−π, π], so where it has a stroke, that ends there.
+    """
+    ends = open_strokes(design.strokes, len(design.joint_names))
+    return np.where(cranks(design)[:, None], crank_bounds(ends), ends)
+
+
 def check_within(design: Design, what: str, joints: Array) -> None:
     """Raise InvalidInput for joint values beyond strokes, or such as no joint can have."""
     margin = STROKE_TOLERANCE * np.where(design.angular, 1.0, design.rms_radius)
-    low, high = open_strokes(design.strokes, len(design.joint_names)).T
+    low, high = joint_ends(design).T
     # Distances are not negative, and angles between lines are at most π.
     angles = design.angular & ~cranks(design)
     low = np.where(angles | ~np.asarray(design.signed), np.maximum(low, 0.0), low)
     high = np.where(angles, np.minimum(high, np.pi), high)
-    # So is the angle of a crank in (−π, π], where it does not turn round without end.
-    ended = cranks(design) & np.isfinite((low, high)).any(axis=0)
-    low, high = np.where(ended, np.clip((low, high), -np.pi, np.pi), (low, high))
     for row in np.flatnonzero((joints < low - margin) | (joints > high + margin)):
         name = design.joint_names[row]
         wanted = f"{name} within its stroke or range, {low[row]:g} to {high[row]:g}"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.bridges.links.drives import check_within, cranks
+from gsp.bridges.links.drives import check_within, cranks, joint_ends
 from gsp.bridges.links.solids import Solids, check_solids
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.mujoco.program import (
@@ -25,8 +25,8 @@ from gsp.errors import FailedComputation, InvalidInput, apart, expected
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
+from gsp.limits.legs import reaches
 from gsp.model.design import Design
-from gsp.model.design.checks import open_strokes
 from gsp.progress import Progress, meter
 from gsp.statics.weights import GRAVITY
 
@@ -38,8 +38,7 @@ MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
 # Open loops, as a share of the size or in rad, above which a state is none of the design. Under
 # gravity, held or moved to what can be reached, they are open by less than 1e-4.
 OPEN_LOOP = 3e-4
-# How near the branches of a drive are to each other where it is not decided on which it is, over
-# the root of a gap, all in sizes or rad.
+# How far a drive reaches beyond a pose where it is not decided on which branch it is, over the gap.
 DEAD_CENTRE = 4.0
 
 
@@ -158,12 +157,11 @@ def simulate(
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos / metres, np.roll(placed.xquat, -1))
     reached = _in_one_turn(design, np.array(data.actuator_length)) / scale
-    gap = largest_gap(data)
-    _check_branches(design, found, reached, gap / (design.rms_radius * metres))
+    _check_branches(design, found, reached, gaps_of(data)[0].max() / metres)
     return Simulation(
         found.compose(Pose(-centre)),
         reached,
-        gap,
+        largest_gap(data),
         largest_speed(model, data),
     )
 
@@ -184,22 +182,18 @@ def _check_closed(data: mujoco.MjData, longest: float) -> None:
 def _check_branches(design: Design, pose: Pose, joints: Array, gap: float) -> None:
     """Raise FailedComputation if a joint value is that of the other branch of its drive.
 
-    `gap` is how far loops are open, in sizes: next to a dead centre the two branches are as near to
-    each other as its root.
+    `gap` is how far loops are open, in the unit of the design. Next to a dead centre, where the
+    drive reaches no further beyond the pose than that, it is not decided.
     """
-    if not design.driven:
-        return
+    driven = np.flatnonzero([row.constraint.driven for row in design.rows])
     legs = [
         leg if leg.drive is None else replace(leg.drive, branch=-leg.drive.branch)
         for leg in design.legs
     ]
-    scale = np.where(design.angular, 1.0, design.rms_radius)
     own, other = (one.at(pose).joints for one in (design, design.replace(legs=legs)))
-    away, there, between = (
-        np.abs(_in_one_turn(design, difference)) / scale
-        for difference in (joints - own, joints - other, own - other)
-    )
-    for row in np.flatnonzero((there < away) & (between > DEAD_CENTRE * gap**0.5)):
+    away, there = (np.abs(_in_one_turn(design, joints - x))[driven] for x in (own, other))
+    beyond = reaches(design, pose.position, pose.rotation)[0]
+    for row in driven[(there < away) & (beyond > DEAD_CENTRE * gap)]:
         wanted = "a motion on which drives keep their branches"
         got = f"one on which {design.joint_names[row]} passed a singular posture of its drive"
         raise FailedComputation(expected("simulate", wanted, got))
@@ -209,7 +203,7 @@ def _changes(design: Design, targets: Array, start: Array) -> Array:
     """Return how far actuators go; a crank without a stroke takes the shorter way round."""
     change = targets - start
     turning = cranks(design)
-    turning &= ~np.isfinite(open_strokes(design.strokes, len(turning))).any(axis=1)
+    turning &= ~np.isfinite(joint_ends(design)).any(axis=1)
     nearest = change - 2.0 * np.pi * np.round(change / (2.0 * np.pi))
     return np.where(turning, nearest, change)
 

@@ -55,7 +55,7 @@ def read_urdf(path: Path, base: str = "", platform: str = "") -> Linkage:
     if not loops:
         wanted = "loops beside it in NAME.urdf.loops.json, or joints in <gazebo>"
         raise MalformedFile(expected(str(path), wanted, "none: the legs are open"))
-    check_ties(file, list(file.root), loops)
+    check_ties(file, list(file.root), loops, places)
     floating = {x.get("name", "") for x in nodes if x.get("type") == "floating"}
     driven = _driven(file, {x.name for x in joints})
     beside.check_driven(driven)

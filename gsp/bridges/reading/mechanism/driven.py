@@ -15,6 +15,9 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm
 from gsp.model.drives import Crank, Drive, Slider
 
+# By how much limits of a crank may be beyond π by rounding [rad].
+ROUNDED_ANGLE = 1e-9
+
 
 def is_driven(freedoms: Sequence[Freedom]) -> bool:
     """Return whether a chain begins with one slide or turn, and nothing behind it slides.
@@ -78,7 +81,10 @@ def driven_leg(freedoms: Sequence[Freedom], where: str, size: float) -> FoundLeg
         raise InvalidInput(expected(where, wanted, f"a cosine of {sense:.2g} between them"))
     if sense < 0.0:
         drive = type(drive)(**{**vars(drive), "branch": -1})
-    low, high = (value + x if np.isfinite(x) else np.nan for x in (first.low, first.high))
+    ends = (first.low, first.high)
+    if first.kind == "turn" and not np.isfinite(ends).all():
+        ends = (-np.inf, np.inf)  # what turns on without an end comes to every angle
+    low, high = (value + x if np.isfinite(x) else np.nan for x in ends)
     return FoundLeg("D1", End(point, first.axis), End(top.point, NONE), [(low, high)], drive)
 
 
@@ -89,7 +95,8 @@ def _counted(first: Freedom) -> float:
         return value
     value = math.remainder(value, math.tau)
     middle = 0.5 * (first.low + first.high)
-    if np.isfinite(middle) and max(value + first.high, -value - first.low) > math.pi:
+    beyond = max(value + first.high, -value - first.low)
+    if np.isfinite(middle) and beyond > math.pi + ROUNDED_ANGLE:
         return -middle
     return value
 
