@@ -415,6 +415,10 @@ def test_cable_robots_within_a_model_and_numbers_of_yaml(tmp_path):
     found = read_model(path)
     path.write_text(POINTS)
     assert_same(found, read_model(path))
+    outside, points = re.split(r"(?m)^(?=points:)", POINTS)
+    path.write_text(f"{outside}\nmodel:\n" + "".join(f"  {x}\n" for x in points.splitlines()))
+    assert found.home is not None
+    assert_same(found, read_model(path))
 
 
 WRONG_PLATES = [

@@ -83,10 +83,10 @@ def _keys_of(keys: Keys) -> str:
 
 def _points(keys: Keys, name: str) -> Design:
     """Cable robots of oKermorgant/cdpr; the home pose is where the platform starts."""
-    if "points" not in keys:
-        keys = keys["model"]
-    points = keys["points"].items(LEAST_LEGS)
+    within = keys if "points" in keys else keys["model"]
+    points = within["points"].items(LEAST_LEGS)
     home = None
+    keys = within if "platform" in within else keys
     if "platform" in keys and "position" in keys["platform"]:
         place = keys["platform"]["position"]
         for key in place.names():
