@@ -109,5 +109,5 @@ GREATEST_FORCE = Index(
     ),
     invariance=AT_PLATFORM_ORIGIN,
     routine=False,
-    parts=_forces,
+    of_actuators=_forces,
 )

@@ -169,7 +169,7 @@ CHECKS: Mapping[str, arguments.Check] = {
     "of_determinant": arguments.flag,
     "share_of": arguments.text,
     "slope": arguments.optional(arguments.function),
-    "parts": arguments.optional(arguments.function),
+    "of_actuators": arguments.optional(arguments.function),
 }
 
 
@@ -221,7 +221,7 @@ class Index(ReadOnly):
     slope : (Slopes, …) -> (..., k) array, or None
         Derivatives of its values along k directions of the dimensions: see `gsp.indices.gradient`.
         None for those that have no formula, and for shares of a maximum.
-    parts : posture, … -> (..., n) array, or None
+    of_actuators : posture, … -> (..., n) array, or None
         The values of the n actuators of which it is the greatest; None for other indices.
 
     Raises
@@ -250,7 +250,7 @@ class Index(ReadOnly):
     of_determinant: bool = False
     share_of: str = ""
     slope: Callable[..., Array] | None = None
-    parts: Callable[..., Array] | None = None
+    of_actuators: Callable[..., Array] | None = None
 
     def __post_init__(self) -> None:
         what = f"index {plain_text(self.name) if is_a(self.name, str) else brief(self.name)}"

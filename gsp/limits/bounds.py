@@ -193,7 +193,9 @@ def _thresholds(design: Design, limits: Limits, *, smooth: bool) -> _Bounded | N
     near = np.where(np.isfinite(bounds), np.abs(bounds), 0.0).max(axis=1)
     size = np.where(near > 0.0, near, 1.0)
     if smooth:
-        split = [index.parts is not None and low == -np.inf for index, low, _ in limits.thresholds]
+        split = [
+            index.of_actuators is not None and low == -np.inf for index, low, _ in limits.thresholds
+        ]
         counts = np.where(split, len(design.joint_names), 1)
         measure = partial(_smooth_values, names, split, settings)
         named = index_quantities(np.repeat(names, counts).tolist())
@@ -217,9 +219,9 @@ def _smooth_values(
     """Return values of indices, of some those of each actuator instead of the greatest one."""
     found = []
     for index, parts in zip((INDICES[name] for name in names), split, strict=True):
-        function = index.parts if parts and index.parts is not None else index.function
-        values = function(posture, **settings.for_index(index))
-        found.append(values if parts else values[..., None])
+        of_actuators = index.of_actuators if parts else None
+        values = (of_actuators or index.function)(posture, **settings.for_index(index))
+        found.append(values[..., None] if of_actuators is None else values)
     return np.concatenate(found, axis=-1)
 
 
