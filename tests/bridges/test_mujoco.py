@@ -270,6 +270,24 @@ def test_a_slider_beside_legs_of_other_kinds_keeps_its_branch(kind, rod):
         simulate(design, design.home, joints)
 
 
+def test_a_strained_loop_does_not_hide_the_branch_of_a_short_rod():
+    """Its own loop is open by far less than the rod leans to the other side; others by more."""
+    lift = gsp.hexapod(6.0, 20.0, 4.0, 30.0, 5.2, degrees=True, unit="m")
+    heads = lift.home.position + lift.platform_points
+    along = heads[0] - lift.base_points[0]
+    along /= np.linalg.norm(along)
+    rails = np.tile([0.0, 0.0, 1.0], (6, 1))
+    rails[0] = np.cross(along, rails[0]) / np.linalg.norm(np.cross(along, rails[0]))
+    base = lift.base_points.copy()
+    base[0] = heads[0] - along * 0.05 * np.sqrt(1.0 - 0.2**2)
+    legs = [Slider(rod=0.05), *["D1"] * 5]
+    design = gsp.Design(legs, base, lift.platform_points, rails, unit="m", home=lift.home)
+    joints = design.at(design.home).joints
+    targets = [-joints[0] - 0.015, *(joints[1:] - 0.2)]
+    with pytest.raises(FailedComputation, match="d1 passed a singular posture of its drive"):
+        simulate(design, design.home, targets)
+
+
 @pytest.mark.parametrize("rod", [0.01, 0.05, 0.3])
 def test_a_motion_to_the_other_branch_of_a_drive_is_refused(rod):
     """A carriage passes below its anchor, to where the rod leans back as it leant forward."""

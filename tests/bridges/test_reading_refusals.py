@@ -99,6 +99,19 @@ def test_legs_that_are_drawn_upright_and_welded(weld, tmp_path):
     np.testing.assert_allclose(found.strokes, middle + [-0.5, 0.5], rtol=1e-12)
 
 
+@pytest.mark.parametrize("aside", [0.0, 0.05])
+def test_a_turn_beside_a_slide_is_about_its_line(aside, tmp_path):
+    """Aside of it, the leg is no longer what the slide counts, once the turn has moved."""
+    path = tmp_path / "aside.xml"
+    turn = f'type="hinge" axis="0 0 1" pos="{aside} 0 0"/><joint name="s0" type="slide"'
+    path.write_text(edited(upright_mjcf("sites"), ('name="s0" type="slide"', turn)))
+    if not aside:
+        assert_anchors(read_model(path))
+        return
+    message = "leg 1 .*: expected a turn beside the slide about the line .* misses by 0.05 m"
+    assert_refused(tmp_path, path.name, path.read_text(), message)
+
+
 def test_a_weld_without_torque_is_a_ball(tmp_path):
     path = tmp_path / "upright.xml"
     ball, site = '<joint type="ball"/>', '<geom size="0.1"/><site'

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -23,10 +22,11 @@ from gsp.bridges.mujoco.program import (
 from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import FailedComputation, InvalidInput, apart, expected
 from gsp.geometry.copies import read_only_tuple
+from gsp.geometry.frames.screws import exp3
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
-from gsp.limits.legs import reaches
+from gsp.geometry.vectors import Array, cross, unit
 from gsp.model.design import Design
+from gsp.model.drives import Crank
 from gsp.progress import Progress, meter
 from gsp.statics.weights import GRAVITY
 
@@ -38,7 +38,8 @@ MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
 # Open loops, as a share of the size or in rad, above which a state is none of the design. Under
 # gravity, held or moved to what can be reached, they are open by less than 1e-4.
 OPEN_LOOP = 3e-4
-# How far a drive reaches beyond a pose where it is not decided on which branch it is, over the gap.
+# How far a rod leans to the other side of a dead centre where a branch is another, over the gap of
+# its loop.
 DEAD_CENTRE = 4.0
 
 
@@ -157,7 +158,7 @@ def simulate(
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos / metres, np.roll(placed.xquat, -1))
     reached = _in_one_turn(design, np.array(data.actuator_length)) / scale
-    _check_branches(design, found, reached, gaps_of(data)[0].max() / metres)
+    _check_branches(design, found, reached, gaps_of(data)[0] / metres)
     return Simulation(
         found.compose(Pose(-centre)),
         reached,
@@ -169,34 +170,37 @@ def simulate(
 def _check_closed(data: mujoco.MjData, longest: float) -> None:
     """Raise FailedComputation if a loop is open by more than a length [m] or a share of a turn."""
     gaps, turns = gaps_of(data)
-    for gap, most, unit in (
+    for gap, most, name in (
         (gaps.max(), longest, "m"),
         (turns.max(initial=0.0), OPEN_LOOP, "rad"),
     ):
         if gap > most:
             wanted = "targets that the legs reach together, and time to get there"
-            got = f"a loop that is open by {gap:.3g} {unit} (most: {most:.3g})"
+            got = f"a loop that is open by {gap:.3g} {name} (most: {most:.3g})"
             raise FailedComputation(expected("simulate", wanted, got))
 
 
-def _check_branches(design: Design, pose: Pose, joints: Array, gap: float) -> None:
-    """Raise FailedComputation if a joint value is that of the other branch of its drive.
+def _check_branches(design: Design, pose: Pose, joints: Array, gaps: Array) -> None:
+    """Raise FailedComputation if a rod leans to the side of the other branch of its drive.
 
-    `gap` is how far loops are open, in the unit of the design. Next to a dead centre, where the
-    drive reaches no further beyond the pose than that, it is not decided.
+    `gaps` is how far the loop of each leg is open, in the unit of the design. A rod that leans by
+    less than a few of them is at a dead centre, as far as that is known.
     """
-    driven = np.flatnonzero([row.constraint.driven for row in design.rows])
-    legs = [
-        leg if leg.drive is None else replace(leg.drive, branch=-leg.drive.branch)
-        for leg in design.legs
-    ]
-    own, other = (one.at(pose).joints for one in (design, design.replace(legs=legs)))
-    away, there = (np.abs(_in_one_turn(design, joints - x))[driven] for x in (own, other))
-    beyond = reaches(design, pose.position, pose.rotation)[0]
-    for row in driven[(there < away) & (beyond > DEAD_CENTRE * gap)]:
-        wanted = "a motion on which drives keep their branches"
-        got = f"one on which {design.joint_names[row]} passed a singular posture of its drive"
-        raise FailedComputation(expected("simulate", wanted, got))
+    for row, (leg, constraint) in enumerate(design.rows):
+        drive = design.drives[leg]
+        if drive is None or not constraint.driven:
+            continue
+        axis = design.base_directions[leg]
+        tip, way = joints[row] * axis, axis
+        if isinstance(drive, Crank):
+            tip = exp3(tip) @ np.array(drive.arm)
+            way = unit(cross(axis, tip))
+        head = pose.position + pose.rotation @ design.platform_points[leg]
+        lean = drive.branch * float((head - design.base_points[leg] - tip) @ way)
+        if lean < -DEAD_CENTRE * gaps[leg]:
+            wanted = "a motion on which drives keep their branches"
+            got = f"one on which {design.joint_names[row]} passed a singular posture of its drive"
+            raise FailedComputation(expected("simulate", wanted, got))
 
 
 def _changes(design: Design, targets: Array, start: Array) -> Array:

@@ -51,9 +51,8 @@ def _check_ball(file: XmlFile, node: Node, loop: Link, places: Mapping[str, Pose
     points = {}
     for body, at in (("A", "AP"), ("B", "BQ")):
         link = file.attribute(file.child(node, f"{BALL}_body_{body}"), "name")
-        there = file.only(node, f"{BALL}_p_{at}")
-        text = "0 0 0" if there is None else there.get("value")
-        own = file.numbers(node, f"{BALL}_p_{at} value", text, 3)
+        there = file.child(node, f"{BALL}_p_{at}")
+        own = file.numbers(node, f"{BALL}_p_{at} value", there.get("value"), 3)
         points[link] = places[link].position + places[link].rotation @ own
     shown = loop.shift.position + loop.shift.rotation @ points[loop.parent]
     away = float(norm(shown - points[loop.child]))

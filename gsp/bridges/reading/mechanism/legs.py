@@ -76,6 +76,10 @@ def leg_of(path: Path, number: int, size: float) -> FoundLeg:
             raise InvalidInput(expected(where, "a turn beside the slide between two lines", "none"))
         driven = driven_of_two(path.freedoms, slide, turn, where)
         return _between_lines(base, platform, slide, turn, u, length, driven, where)
+    if turn is not None:
+        centre = (platform if lines[0] else base).point
+        away = float(norm(cross(slide.axis, turn.point - centre)))
+        check_near(away, size, where, "a turn beside the slide about the line through a joint S")
     check_driven(path.freedoms, slide, where)
     names = {(False, False): "D1", (False, True): "D2", (True, False): "D3"}
     stroke = _stroke(slide, length, float(slide.axis @ u), where)
