@@ -405,7 +405,6 @@ def test_infinite_ends_of_ranges_of_mjcf(tmp_path):
 def test_strokes_with_one_end_are_read_back(form, tmp_path):
     strokes = [(np.nan, 2.5), (1.2, np.nan), (np.nan, np.nan), (1.0, 3.0), (1.5, 2.2), (0.5, 5.0)]
     found = read_model(exported(form, tmp_path, LIFT.replace(strokes=strokes))).strokes
-    # MuJoCo has no length below zero, and a length has none.
     np.testing.assert_allclose(np.nan_to_num(found), np.nan_to_num(strokes), atol=1e-9)
     assert np.isnan(found).tolist() == np.isnan(strokes).tolist()
 

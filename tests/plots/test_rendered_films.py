@@ -106,7 +106,7 @@ def test_wrong_arguments_are_refused():
 
 
 def test_errors_have_the_number_of_the_pose_in_the_path():
-    """Cranks of a platform that rises do not reach it any more: every tenth pose is shown."""
+    """Cranks of a platform that rises do not reach it any more; 12 of 100 poses are shown."""
     design = gsp.catalogue.design("lane-rotary")
     steps = np.linspace(0.0, 2.0 * design.rms_radius, 100)[:, None] * [0.0, 0, 1, 0, 0, 0]
     poses = design.home.moved(steps)

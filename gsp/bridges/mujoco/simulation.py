@@ -154,11 +154,12 @@ def simulate(
                 report(step + 1, steps)
     mujoco.mj_forward(model, data)
     metres = check_solids(solids).unit(design)
-    _check_closed(data, OPEN_LOOP * design.rms_radius * metres)
+    gaps, turns = gaps_of(data)
+    _check_closed(gaps, turns, OPEN_LOOP * design.rms_radius * metres)
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos / metres, np.roll(placed.xquat, -1))
     reached = _in_one_turn(design, np.array(data.actuator_length)) / scale
-    _check_branches(design, found, reached, gaps_of(data)[0] / metres)
+    _check_branches(design, found, reached, gaps / metres)
     return Simulation(
         found.compose(Pose(-centre)),
         reached,
@@ -167,9 +168,8 @@ def simulate(
     )
 
 
-def _check_closed(data: mujoco.MjData, longest: float) -> None:
-    """Raise FailedComputation if a loop is open by more than a length [m] or a share of a turn."""
-    gaps, turns = gaps_of(data)
+def _check_closed(gaps: Array, turns: Array, longest: float) -> None:
+    """Raise FailedComputation if a loop is open by more than a length [m], or than OPEN_LOOP."""
     for gap, most, name in (
         (gaps.max(), longest, "m"),
         (turns.max(initial=0.0), OPEN_LOOP, "rad"),
