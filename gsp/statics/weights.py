@@ -278,7 +278,4 @@ def holding_forces(
     >>> round(float(forces[0] * 6 * 1.2 / d.at(d.home).joints[0]), 9) == 60 * 9.81
     True
     """
-    wrench = gravity_wrench(design, pose, masses, gravity)
-    known = np.asarray(np.isfinite(wrench).all(axis=-1))
-    forces = design.at(pose).actuator_forces(np.where(known[..., None], wrench, 0.0))
-    return np.where(known[..., None], forces, np.nan)
+    return design.at(pose).actuator_forces(gravity_wrench(design, pose, masses, gravity))

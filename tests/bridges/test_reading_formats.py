@@ -107,6 +107,8 @@ WRONG_URDF = {
                r'\1prismatic\2<axis xyz="0 0 1"/>'), "a joint of 1 freedoms"),
     "no axis": ((r'(<joint name="d1".*?)<axis xyz="[^"]*"', r"\1<axis"), "<axis> xyz: expected 3 "),
     "gazebo": (('type="fixed"', 'type="ball"'), "type: expected fixed, as the loop in"),
+    "gazebo twice": (('name="[^"]*" type="fixed"', 'name="d1" type="fixed"'),
+                     "name: expected a name of its own, received 'd1'"),
 }  # fmt: skip
 
 
@@ -114,7 +116,7 @@ WRONG_URDF = {
 def test_wrong_parts_of_urdf(case, tmp_path):
     change, message = WRONG_URDF[case]
     text = exported("urdf", tmp_path).read_text()
-    if case == "gazebo":
+    if case.startswith("gazebo"):
         text = text[: text.index("<gazebo>")] + edited(text[text.index("<gazebo>") :], change)
     else:
         text = edited(text, change)

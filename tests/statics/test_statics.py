@@ -90,7 +90,23 @@ def test_a_singular_posture_in_a_batch_changes_no_other_forces():
     assert np.isnan(forces[-1]).all()
     np.testing.assert_array_equal(forces[:-1], lift.at(poses).actuator_forces(wrench))
     np.testing.assert_array_equal(forces[3], lift.at(poses[3]).actuator_forces(wrench))
-    np.testing.assert_allclose(lift.at(poses).wrench(forces[:-1]), [-wrench] * 20, rtol=1e-11)
+    back = lift.at(flat).wrench(forces)
+    np.testing.assert_allclose(back, [-wrench] * 20 + [[np.nan] * 6], rtol=1e-11)
+    np.testing.assert_array_equal(np.isnan(lift.at(flat).actuator_forces(back)), np.isnan(forces))
+
+
+@pytest.mark.parametrize("legs", [6, 8])
+def test_nan_in_one_number_is_nan_in_all_that_depend_on_it(legs):
+    rng = np.random.default_rng(legs)
+    design = gsp.Design(["D1"] * legs, rng.normal(size=(legs, 3)), rng.normal(size=(legs, 3)))
+    posture = design.at(gsp.Pose([0.0, 0.0, 2.0]))
+    for call, number in ((posture.wrench, legs), (posture.actuator_forces, 6)):
+        given = np.ones((3, number))
+        given[1, 2] = np.nan
+        assert np.isnan(call(given)).all(axis=1).tolist() == [False, True, False]
+        given[1, 2] = np.inf
+        with pytest.raises(InvalidInput, match=r"index \[1, 2\]\): expected finite"):
+            call(given)
 
 
 def test_singular_and_undefined_postures_have_no_balance():

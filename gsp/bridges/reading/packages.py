@@ -83,11 +83,10 @@ def _keys_of(keys: Keys) -> str:
 
 def _points(keys: Keys, name: str) -> Design:
     """Cable robots of oKermorgant/cdpr; the home pose is where the platform starts."""
-    within = keys if "points" in keys else keys["model"]
-    points = within["points"].items(LEAST_LEGS)
+    points = _beside_or_in_model(keys, "points")["points"].items(LEAST_LEGS)
     home = None
-    keys = within if "platform" in within else keys
-    if "platform" in keys and "position" in keys["platform"]:
+    keys = _beside_or_in_model(keys, "platform")
+    if "platform" in keys and "position" in keys["platform"].names():
         place = keys["platform"]["position"]
         for key in place.names():
             if key not in PLACE:
@@ -102,6 +101,16 @@ def _points(keys: Keys, name: str) -> Design:
         unit="m",
         name=name,
     )
+
+
+def _beside_or_in_model(keys: Keys, key: str) -> Keys:
+    """Return the mapping that has a key: that of the whole file, or the one of its `model`."""
+    within = keys["model"] if "model" in keys else keys
+    if key not in within.names():
+        return keys
+    if within is not keys and key in keys:
+        within[key].fail(f"one {key} in the file; another is beside `model`")
+    return within
 
 
 def _actuators(keys: Keys, name: str) -> Design:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.arguments import bounded_array
 from gsp.errors import MissingParameter, expected
 from gsp.geometry.copies import kept_property, read_only
 from gsp.geometry.frames.changes import about_point
@@ -17,7 +16,7 @@ from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.posture.assembled import Assembled, finite_rows
-from gsp.model.posture.statics import least_forces
+from gsp.model.posture.statics import forces_or_nan, least_forces
 
 
 def check_length(length: float | None, needed: bool, why: str) -> float | None:
@@ -217,23 +216,23 @@ class Evaluated(Assembled):
         Parameters
         ----------
         actuator_forces : (..., n) array_like [force; force · unit of the design for A1 actuators]
-            Positive where an actuator pushes its joint value up.
+            Positive where an actuator pushes its joint value up; NaN where it is undefined.
 
         Returns
         -------
         (..., c) array [force, force · unit of the design]
-            Force and moment about the platform origin in base axes; NaN where the Jacobian is, or
-            is infinite.
+            Force and moment about the platform origin in base axes; NaN where a force or the
+            Jacobian is, or where the Jacobian is infinite.
 
         Raises
         ------
         InvalidInput
-            On shapes that do not fit, or numbers beyond 1e100.
+            On shapes that do not fit, infinite numbers or numbers beyond 1e100.
 
         *Source: docs/conventions.md, "Frames and reference points", by the principle of virtual
         work*
         """
-        forces = bounded_array("actuator_forces", actuator_forces, (len(self.joint_names),))
+        forces = forces_or_nan("actuator_forces", actuator_forces, len(self.joint_names))
         common_shape("actuator_forces", forces.shape[:-1], self.shape)
         return np.asarray((forces[..., None, :] @ finite_rows(self, self.jacobian))[..., 0, :])
 
@@ -246,18 +245,20 @@ class Evaluated(Assembled):
         Parameters
         ----------
         wrench : (..., c) array_like [force, force · unit of the design]
-            External force and moment about the platform origin, in base axes.
+            External force and moment about the platform origin, in base axes; NaN where it is
+            undefined.
 
         Returns
         -------
         (..., n) array [force; force · unit of the design for A1 actuators]
-            What the actuators exert, positive where they push their joint values up. NaN where the
-            posture is undefined or singular (see `singular`).
+            What the actuators exert, positive where they push their joint values up. NaN where a
+            number of the wrench is, and where the posture is undefined or singular (see
+            `singular`).
 
         Raises
         ------
         InvalidInput
-            On shapes that do not fit, or numbers beyond 1e100.
+            On shapes that do not fit, infinite numbers or numbers beyond 1e100.
 
         *Source: the principle of virtual work; the weight of torques is ours*
 
@@ -269,7 +270,7 @@ class Evaluated(Assembled):
         >>> posture.wrench(posture.actuator_forces(weight)).round(6) + 0.0
         array([  0.,   0., 100.,   0.,   0.,   0.])
         """
-        given = bounded_array("wrench", wrench, (self._columns,))
+        given = forces_or_nan("wrench", wrench, self._columns)
         common_shape("wrench", given.shape[:-1], self.shape)
         n, size = self.design.dimension, self.design.rms_radius
         moved = about_point(given, arm_of_centre(self.design, self.pose))

@@ -7,13 +7,29 @@ q̇ = J (v, ω) this is w = Jᵀ f.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from gsp.arguments import bounded_array
+from gsp.checks import check_array
 from gsp.geometry.matrices import defined_matrices, full_rank
 from gsp.geometry.vectors import Array
 
 # Condition number, of Frobenius norms, below which a matrix has full rank whatever rounding does,
 # and its inverse takes no more than four digits.
 CERTAIN = 1e4
+
+
+def forces_or_nan(what: str, value: ArrayLike, number: int) -> Array:
+    """Return forces of shape (..., number) as float64, with NaN where they are undefined.
+
+    Raises
+    ------
+    InvalidInput
+        On other shapes, infinite numbers or numbers beyond 1e100.
+    """
+    given = check_array(what, value, (number,), finite=False)
+    bounded_array(what, np.where(np.isnan(given), 0.0, given), (number,))
+    return given
 
 
 def least_forces(jacobian: Array, wrench: Array) -> Array:

@@ -49,7 +49,7 @@ def gazebo_loops(
     frames[MODEL] = Pose(np.zeros(3))
     (root,) = places.keys() - {joint.child for joint in joints}
     nodes = file.root.findall("gazebo/joint")
-    file.names(nodes)
+    file.names([*file.root.iterfind("joint"), *nodes])
 
     def frame(name: str, asked: Node, key: str) -> Pose:
         if name not in frames:
