@@ -18,7 +18,7 @@ from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import body, ellipsoid, enclose, frame
 from gsp.plots.common.labels import SpaceNote, write_in_space
-from gsp.plots.common.legs import draw_leg
+from gsp.plots.common.legs import draw_leg, ends_of_lines
 from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, space_or_new, title_text
 
 if TYPE_CHECKING:
@@ -85,8 +85,9 @@ def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None
 
 def _draw(ax: Axes3D, posture: Posture) -> None:
     points, size = extent(posture)
-    lines = draw_parts(ax, posture, size)
+    draw_parts(ax, posture, size)
     frames, far, letters = _frames(ax, posture.pose, size, points.mean(axis=0))
+    lines = line_ends(posture, size)
     _dress(ax, posture, np.concatenate((points, frames, lines)), size, far)
     write_in_space(ax, letters + _numbers(posture, size))
 
@@ -104,7 +105,13 @@ def extent(posture: Posture) -> tuple[Array, float]:
     return points, float(np.ptp(points, axis=0).max()) or posture.design.rms_radius or 1.0
 
 
-def draw_parts(ax: Axes3D, posture: Posture, size: float) -> Array:
+def line_ends(posture: Posture, size: float) -> Array:
+    """Return the ends (n, 3) [length] of the lines on which legs slide, in a drawing of a size."""
+    feet = enumerate(zip(*_feet(posture), strict=True))
+    return np.concatenate([ends_of_lines(posture, i, *ends, size) for i, ends in feet])
+
+
+def draw_parts(ax: Axes3D, posture: Posture, size: float) -> None:
     """Draw base, platform, legs with their joints, and the operation ellipsoid if there is one.
 
     Parameters
@@ -113,19 +120,14 @@ def draw_parts(ax: Axes3D, posture: Posture, size: float) -> Array:
     posture : Posture of batch shape ()
     size : float [length]
         Of the drawing.
-
-    Returns
-    -------
-    (n, 3) array [length]
-        Ends of the lines on which legs slide.
     """
     bottoms, tops = _feet(posture)
     if posture.design.ellipsoid is not None:
         ellipsoid(ax, *_ellipsoid(posture), VERMILION)
     body(ax, _base_corners(posture, bottoms), GREY, size)
     body(ax, tops, BLUE, size)
-    ends = zip(bottoms, tops, strict=True)
-    return np.concatenate([draw_leg(ax, posture, i, *feet, size) for i, feet in enumerate(ends)])
+    for i, feet in enumerate(zip(bottoms, tops, strict=True)):
+        draw_leg(ax, posture, i, *feet, size)
 
 
 def _ellipsoid(posture: Posture) -> tuple[Array, Array]:

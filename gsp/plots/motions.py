@@ -18,12 +18,11 @@ from gsp.figures import INK, require_matplotlib, style
 from gsp.geometry.copies import ReadOnly, read_only
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.plots.common.bodies import enclose
 from gsp.plots.common.style import VERMILION, design_label, film_panels, plain
 from gsp.plots.films import Film
-from gsp.plots.mechanisms import draw_parts, extent, legend_entries
+from gsp.plots.mechanisms import draw_parts, extent, legend_entries, line_ends
 from gsp.plots.sweeps import along
 from gsp.sweeps import Path, index_columns, sweep
 
@@ -194,16 +193,17 @@ class _Scene:
         self.size = extent(design.at(poses[0]))[1]
         points = []
         for frame in range(poses.size):
-            points += [extent(design.at(poses[frame]))[0], self.draw(frame)]
+            posture = design.at(poses[frame])
+            points += [extent(posture)[0], line_ends(posture, self.size)]
         enclose(ax, np.concatenate(points), design.unit, self.size)
         ax.legend(handles=legend_entries(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
         ax.set_title(design_label(design.name), fontsize=11)
 
-    def draw(self, frame: int) -> Array:
-        """Draw the mechanism at one of the poses, instead of what is drawn; as `draw_parts`."""
+    def draw(self, frame: int) -> None:
+        """Draw the mechanism at one of the poses, instead of what is drawn."""
         for artist in [*self.ax.lines, *self.ax.collections]:
             artist.remove()
-        return draw_parts(self.ax, self.design.at(self.poses[frame]), self.size)
+        draw_parts(self.ax, self.design.at(self.poses[frame]), self.size)
 
 
 class _Rendered:

@@ -305,6 +305,40 @@ def test_a_motion_to_the_other_branch_of_a_drive_is_refused(rod):
         simulate(design, design.home, joints, duration=1.0)
 
 
+@pytest.mark.parametrize("kind", ["D3", "D4"])
+def test_a_distance_that_passes_zero_is_refused(kind):
+    """A seventh leg measures x + 0.02 along a line; the six others lead beyond its zero."""
+    lift = gsp.hexapod(1.0, 0.3, 0.6, 0.4, 1.2, unit="m")
+    design = gsp.Design(
+        ["D1"] * 6 + [kind],
+        [*lift.base_points, [0.0, 0.0, 0.2]],
+        [*lift.platform_points, [0.02, 0.0, -0.2]],
+        base_directions=[[0.0, 0.0, 1.0]] * 7,
+        platform_directions=[[0.0, 0.6, 0.8]] * 7,
+        home=lift.home,
+        unit="m",
+    )
+    for x, refused in ((-0.01, False), (-0.06, True)):
+        lengths = lift.at(gsp.Pose([x, 0.0, 1.2])).joints
+        joints = [*lengths, max(x + 0.02, 0.0)]
+        if refused:
+            with pytest.raises(FailedComputation, match="on which d7 passed 0"):
+                simulate(design, design.home, joints, gravity=[0.0, 0.0, 0.0])
+            continue
+        found = simulate(design, design.home, joints, gravity=[0.0, 0.0, 0.0])
+        assert found.joints[6] == pytest.approx(0.01, abs=1e-6)
+        assert found.passed is None
+
+
+@pytest.mark.parametrize(("frequency", "passed"), [(300.0, False), (2.0, True)])
+def test_a_platform_that_falls_through_its_base_has_passed_a_singular_posture(frequency, passed):
+    """Below the base are the mirror images of the poses above, where det J has the other sign."""
+    lift = gsp.hexapod(1.0, 0.3, 0.6, 0.4, 0.6, unit="m")
+    found = simulate(lift, lift.home, servo_frequency=frequency)
+    assert (found.pose.position[2] < 0.0) == passed
+    assert found.passed is passed
+
+
 def test_the_gap_is_a_distance():
     """Legs of D1 are as long as their joint values but for the gaps of their loops."""
     rng = np.random.default_rng(3)

@@ -252,7 +252,7 @@ WRONG = {
     "sdf axis": ("sdf", "<xyz>0.0 0.0 1.0</xyz>", "<xyz>0 0</xyz>",
                  r"line \d+, <axis>, <xyz>: expected 3 finite numbers, received '0 0'"),
     "sdf leg": ("sdf", 'name="d1" type="prismatic"', 'name="d1" type="revolute"',
-                "leg 1 \\(joints leg1_base d1 leg1_platform\\): expected one slide"),
+                "leg 1 \\(joints leg1_base, d1, leg1_platform\\): expected one slide"),
     "mjcf": ("mjcf", 'joint="d1"', 'joint="d9"', "expected a model that MuJoCo reads.*line \\d+"),
     "mjcf leg": ("mjcf", 'class="slide" type="slide"', 'type="hinge"',
                  "leg 1 \\(joints .*: expected one slide, or a slide and a turn"),

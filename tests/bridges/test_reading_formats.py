@@ -50,9 +50,9 @@ WRONG_SDF = {
                 "<include>: expected a model whose links and joints are its own"),
     "nested": (("</model>", '<model name="in"><link name="q"/></model></model>'), "<model name='"),
     "guide": (("</model>", '<joint name="g" type="prismatic"><parent>frame</parent>'
-               "<child>disc</child><axis/></joint></model>"), r"a joint of 1 freedoms \(slide"),
+               "<child>disc</child><axis/></joint></model>"), r"of 1 degree of freedom \(slide"),
     "ground": (("</model>", '<joint name="g" type="prismatic"><parent>world</parent>'
-                "<child>disc</child><axis/></joint></model>"), r"a joint of 1 freedoms \(slide"),
+                "<child>disc</child><axis/></joint></model>"), r"of 1 degree of freedom \(slide"),
     "mimic": (("</xyz><limit>", '</xyz><mimic joint="ram1"/><limit>'), "<mimic> of 'ram1'"),
     "static": (('<link name="frame"/>', '<static>true</static><link name="frame"/>'), "<static>"),
     "no links": (("<frame .*</model>", "</model>"), "<link>: expected links, received none"),
@@ -66,6 +66,12 @@ WRONG_SDF = {
 def test_wrong_parts_of_sdf(case, tmp_path):
     change, message = WRONG_SDF[case]
     assert_refused(tmp_path, "wrong.sdf", edited(SDF, change), message)
+
+
+def test_kinds_of_joints_in_sdf_are_read_in_any_case(tmp_path):
+    path = tmp_path / "lift.sdf"
+    path.write_text(SDF.replace('type="prismatic"', 'type="Prismatic"'))
+    assert_anchors(read_model(path))
 
 
 def slides_in_model_axes(text):
@@ -104,7 +110,7 @@ WRONG_URDF = {
     "macro": (("</robot>", "<xacro:leg/></robot>"), "<xacro:leg>: expected a model"),
     "mimic": ((r'(<joint name="d2"[^>]*>)', r'\1<mimic joint="d1"/>'), "<mimic> of 'd1'"),
     "guide": ((r'(name="base_to_platform" type=")floating("[^>]*>)',
-               r'\1prismatic\2<axis xyz="0 0 1"/>'), "a joint of 1 freedoms"),
+               r'\1prismatic\2<axis xyz="0 0 1"/>'), "a joint of 1 degree of freedom"),
     "no axis": ((r'(<joint name="d1".*?)<axis xyz="[^"]*"', r"\1<axis"), "<axis> xyz: expected 3 "),
     "gazebo": (('type="fixed"', 'type="ball"'), "type: expected fixed, as the loop in"),
     "gazebo twice": (('name="[^"]*" type="fixed"', 'name="d1" type="fixed"'),

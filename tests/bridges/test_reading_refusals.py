@@ -48,6 +48,14 @@ def without_balls(text):
     return re.sub("<drake:ball_constraint .*?</drake:ball_constraint>", "", text, flags=re.DOTALL)
 
 
+def test_a_pose_in_which_a_leg_is_undefined_is_refused(tmp_path):
+    """The slide of a leg whose two spherical joints coincide counts a length that is not known."""
+    path = tmp_path / "upright.xml"
+    place = ring([LIFT.base_points[2] - LIFT.home.position])[0]
+    text = edited(upright_mjcf("sites"), ('name="p2" pos="[^"]*"', f'name="p2" pos="{place}"'))
+    assert_refused(tmp_path, path.name, text, "all legs are defined, received d3, where the anchor")
+
+
 # Loops that the file has open.
 
 
@@ -149,9 +157,9 @@ TENDON = """<tendon><fixed name="both"><joint joint="ram0" coef="1"/><joint join
   </fixed></tendon>"""
 EQUAL = "</equality>"
 HOLDING = {
-    "guide": ("<freejoint/>", '<joint type="slide" axis="0 0 1"/>', "a joint of 1 freedoms"),
-    "ball": ("<freejoint/>", '<joint type="ball"/>', r"a joint of 3 freedoms \(ball"),
-    "slides": ("<freejoint/>", SLIDES, "a joint of 3 freedoms"),
+    "guide": ("<freejoint/>", '<joint type="slide" axis="0 0 1"/>', "of 1 degree of freedom"),
+    "ball": ("<freejoint/>", '<joint type="ball"/>', r"a joint of 3 degrees of freedom \(ball"),
+    "slides": ("<freejoint/>", SLIDES, "a joint of 3 degrees of freedom"),
     "pin": (EQUAL, f'<connect body1="top" body2="world" anchor="0 0 0"/>{EQUAL}',
             "nothing but the legs that holds the platform 'top', received a joint of 3"),
     "weld": (EQUAL, f'<weld body1="top" body2="world"/>{EQUAL}', "'top', which is fixed to it"),
@@ -469,7 +477,7 @@ def test_joints_that_are_all_at_one_point_are_refused(tmp_path):
     loops = "".join(f'<connect body1="b{i}" body2="top" anchor="0 0 0"/>' for i in range(3))
     top = f'<body name="top"><joint type="hinge" axis="0 1 0"/>{GEOM}</body>'
     text = f"{HEAD}{top}{legs}</worldbody><equality>{loops}</equality></mujoco>"
-    assert_refused(tmp_path, "point.xml", text, "a joint of 1 freedoms")
+    assert_refused(tmp_path, "point.xml", text, "a joint of 1 degree of freedom")
     assert_refused(tmp_path, "point.xml", text.replace("hinge", "free", 1), "received 4")
 
 
@@ -501,7 +509,10 @@ HELD = """<drake:ball_constraint name="held"><drake:ball_constraint_body_A name=
         ('<loop name="x" type="fixed"/>', "no constraints but those of its loops"),
         ('<drake:joint name="strut" type="ball"/>', "name='strut'>: expected joints of the format"),
         (CONTROL_OF_ONE, "expected the joints that have an actuator in .*, received none for 'd2'"),
-        (INNER, "<transmission.*: expected the joints .*, received one for 'leg1_base_x'"),
+        (
+            INNER,
+            "<joint name='leg1_base_x'>: expected the joints .*, received one for 'leg1_base_x'",
+        ),
     ],
 )
 def test_elements_of_urdf_that_tie_joints_or_links_are_refused(element, message, tmp_path):

@@ -136,15 +136,22 @@ def joint_ends(design: Design) -> Array:
 def check_within(design: Design, what: str, joints: Array) -> None:
     """Raise InvalidInput for joint values beyond strokes, or such as no joint can have."""
     margin = STROKE_TOLERANCE * np.where(design.angular, 1.0, design.rms_radius)
-    low, high = joint_ends(design).T
-    # Distances are not negative, and angles between lines are at most π.
-    angles = design.angular & ~cranks(design)
-    low = np.where(angles | ~np.asarray(design.signed), np.maximum(low, 0.0), low)
-    high = np.where(angles, np.minimum(high, np.pi), high)
+    ends, possible = joint_ends(design).T, joint_ranges(design).T
+    low, high = np.maximum(ends[0], possible[0]), np.minimum(ends[1], possible[1])
     for row in np.flatnonzero((joints < low - margin) | (joints > high + margin)):
         name = design.joint_names[row]
         wanted = f"{name} within its stroke or range, {low[row]:g} to {high[row]:g}"
         raise InvalidInput(expected(what, wanted, f"{joints[row]:g}"))
+
+
+def joint_ranges(design: Design) -> Array:
+    """Return the values that joints can have (n, 2) [unit, rad].
+
+    Distances are not negative, and angles between lines are at most π.
+    """
+    between = design.angular & ~cranks(design)
+    low = np.where(between | ~np.asarray(design.signed), 0.0, -np.inf)
+    return np.stack((low, np.where(between, np.pi, np.inf)), axis=1)
 
 
 def cranks(design: Design) -> Mask:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.bridges.links.drives import check_within, cranks, joint_ends
+from gsp.bridges.links.drives import check_within, cranks, joint_ends, joint_ranges
 from gsp.bridges.links.solids import Solids, check_solids
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.mujoco.program import (
@@ -27,6 +27,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, unit
 from gsp.model.design import Design
 from gsp.model.drives import Crank
+from gsp.model.posture import Posture
 from gsp.progress import Progress, meter
 from gsp.statics.weights import GRAVITY
 
@@ -58,12 +59,17 @@ class Simulation(NamedTuple):
         How far the most open loop is open [m, or rad], by the compliance of MuJoCo's constraints.
     speed : float
         Largest speed of a joint of a leg that is left [m/s, rad/s]; of a ball that of its turn.
+    passed : bool or None
+        Whether det J has another sign than at the start: the platform went through a singular
+        posture, perhaps to another assembly mode than the one to which `gsp.track` leads. None of
+        other than six actuators, and where the start or the end is singular.
     """
 
     pose: Pose
     joints: Array
     gap: float
     speed: float
+    passed: bool | None
 
 
 @arguments.validated(duration=arguments.positive)
@@ -108,9 +114,10 @@ def simulate(
         If MuJoCo is not installed.
     FailedComputation
         If the motion becomes unstable in MuJoCo, or ends with loops that are open by more than
-        3e-4 of the size of the design (rms_radius) or 3e-4 rad, or with a drive at the base on its
-        other branch. Targets that the legs cannot reach together may lead there; else the servos
-        give way, and `joints` are not the targets.
+        3e-4 of the size of the design (rms_radius) or 3e-4 rad, with a drive at the base on its
+        other branch, or beyond a distance of zero or an angle of 0 or π between lines. Targets that
+        the legs cannot reach together may lead there; else the servos give way, and `joints` are
+        not the targets.
     InvalidInput
         If the pose or `joints` is beyond the strokes of the design, or a target is negative for a
         distance, or outside [0, π] for an angle between lines or [−π, π] for a crank with a stroke.
@@ -165,6 +172,7 @@ def simulate(
         reached,
         largest_gap(data),
         largest_speed(model, data),
+        _passed(design.at(pose), design.at(found)),
     )
 
 
@@ -183,9 +191,18 @@ def _check_closed(gaps: Array, turns: Array, longest: float) -> None:
 def _check_branches(design: Design, pose: Pose, joints: Array, gaps: Array) -> None:
     """Raise FailedComputation if a rod leans to the side of the other branch of its drive.
 
-    `gaps` is how far the loop of each leg is open, in the unit of the design. A rod that leans by
-    less than a few of them is at a dead centre, as far as that is known.
+    So do distances below zero, and angles between lines that are not from 0 to π, of which the
+    design has others at the same pose. `gaps` is how far the loop of each leg is open, in the unit
+    of the design. What is beyond a limit by less than a few of them is at it, as far as that is
+    known.
     """
+    margin = DEAD_CENTRE * gaps[[leg for leg, _ in design.rows]]
+    low, high = joint_ranges(design).T
+    beyond = np.maximum(low - joints, joints - high)
+    for k in np.flatnonzero(beyond * np.where(design.angular, design.rms_radius, 1.0) > margin):
+        wanted = "a motion on which distances and angles between lines are positive, angles below π"
+        got = f"one on which {design.joint_names[k]} passed {'0' if joints[k] < 0.0 else 'π'}"
+        raise FailedComputation(expected("simulate", wanted, got))
     for row, (leg, constraint) in enumerate(design.rows):
         drive = design.drives[leg]
         if drive is None or not constraint.driven:
@@ -197,10 +214,20 @@ def _check_branches(design: Design, pose: Pose, joints: Array, gaps: Array) -> N
             way = unit(cross(axis, tip))
         head = pose.position + pose.rotation @ design.platform_points[leg]
         lean = drive.branch * float((head - design.base_points[leg] - tip) @ way)
-        if lean < -DEAD_CENTRE * gaps[leg]:
+        if lean < -margin[row]:
             wanted = "a motion on which drives keep their branches"
             got = f"one on which {design.joint_names[row]} passed a singular posture of its drive"
             raise FailedComputation(expected("simulate", wanted, got))
+
+
+def _passed(start: Posture, end: Posture) -> bool | None:
+    """Whether det J changed its sign between two postures; None where it has none."""
+    matrices = np.stack((start.about_centre, end.about_centre))
+    if matrices.shape[-2] != matrices.shape[-1] or start.singular() or end.singular():
+        return None
+    with np.errstate(invalid="ignore"):
+        signs = np.linalg.slogdet(matrices)[0]
+    return bool(signs[0] != signs[1]) if signs.all() and np.isfinite(signs).all() else None
 
 
 def _changes(design: Design, targets: Array, start: Array) -> Array:

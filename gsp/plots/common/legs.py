@@ -23,41 +23,66 @@ MOST_OF_LINE = 0.5
 ACTUATED = 0.55
 
 
-def draw_leg(ax: Axes3D, posture: Posture, i: int, bottom: Array, top: Array, size: float) -> Array:
-    """Draw one leg with its joints, and return the ends of the lines that it slides on."""
-    design, lines = posture.design, posture.lines
-    kind = design.legs[i]
+def draw_leg(ax: Axes3D, posture: Posture, i: int, bottom: Array, top: Array, size: float) -> None:
+    """Draw one leg with its joints, unless it is undefined."""
+    kind = posture.design.legs[i]
+    if np.isnan(posture.segments.platform_feet[i]).any():
+        return
+    colour = LEGS[kind.name]
+    slides = _slides(posture, i, bottom, top)
+    for slide in slides.values():
+        _cylinder(ax, *slide, colour, size)
+    if kind.drive is not None:
+        _driven(ax, posture, i, bottom, top, slides["base"][1])
+        return
+    for side, foot in (("base", bottom), ("platform", top)):
+        if side not in slides:
+            _ball(ax, foot, colour)
+    _rod(ax, bottom, top, colour, prismatic=kind.joints[1].kind == "P", size=size)
+
+
+def ends_of_lines(posture: Posture, i: int, bottom: Array, top: Array, size: float) -> Array:
+    """Return the ends (n, 3) [length] of the lines on which a leg slides, as they are drawn."""
     if np.isnan(posture.segments.platform_feet[i]).any():
         return np.empty((0, 3))
-    colour = LEGS[kind.name]
+    ends = [_ends(*slide, size) for slide in _slides(posture, i, bottom, top).values()]
+    return np.reshape(ends, (-1, 3))
+
+
+def _slides(
+    posture: Posture, i: int, bottom: Array, top: Array
+) -> dict[str, tuple[Array, Array, Array]]:
+    """Return the lines on which a leg slides, or its crank turns: anchor, foot and direction."""
+    design, lines, kind = posture.design, posture.lines, posture.design.legs[i]
+    base, along = design.base_points[i], design.base_directions[i]
     if kind.drive is not None:
-        return _driven(ax, posture, i, bottom, top, size)
-    ends = []
-    for slides, foot, anchor, direction in (
-        (kind.base_line, bottom, design.base_points[i], lines.s[i]),
-        (kind.platform_line, top, posture.pose.position + lines.arm[i], lines.t[i]),
-    ):
-        if slides:
-            ends.append(_cylinder(ax, anchor, foot, direction, colour, size))
-        else:
-            ax.scatter(*foot, s=34, color=colour, edgecolor="white", linewidth=0.8, zorder=5)
-    _rod(ax, bottom, top, colour, prismatic=kind.joints[1].kind == "P", size=size)
-    return np.concatenate(ends) if ends else np.empty((0, 3))
+        turns = kind.joints[0].kind == "R"
+        # The crank starts at the foot of its tip on the axis.
+        return {
+            "base": (base, base + ((bottom - base) @ along) * along if turns else bottom, along)
+        }
+    found = {}
+    if kind.base_line:
+        found["base"] = (base, bottom, lines.s[i])
+    if kind.platform_line:
+        found["platform"] = (posture.pose.position + lines.arm[i], top, lines.t[i])
+    return found
 
 
-def _driven(ax: Axes3D, posture: Posture, i: int, tip: Array, top: Array, size: float) -> Array:
-    """Draw a rod with its slider on the rail or its crank on the axis; return the line's ends."""
-    design = posture.design
-    colour, line, base = LEGS[design.legs[i].name], design.base_directions[i], design.base_points[i]
+def _driven(ax: Axes3D, posture: Posture, i: int, tip: Array, top: Array, start: Array) -> None:
+    """Draw a rod with its joints, and the crank from a point on its axis, if it has one."""
+    kind = posture.design.legs[i]
+    colour = LEGS[kind.name]
     ax.plot(*np.stack((tip, top)).T, color=colour, linewidth=2.0, solid_capstyle="round")
     for end in (tip, top):
-        ax.scatter(*end, s=34, color=colour, edgecolor="white", linewidth=0.8, zorder=5)
-    if design.legs[i].joints[0].kind == "R":
-        # The crank starts at the foot of its tip on the axis.
-        centre = base + ((tip - base) @ line) * line
-        ax.plot(*np.stack((centre, tip)).T, color=colour, linewidth=4.2, solid_capstyle="round")
-        return _cylinder(ax, base, centre, line, colour, size)
-    return _cylinder(ax, base, tip, line, colour, size)
+        _ball(ax, end, colour)
+    if kind.joints[0].kind == "R":
+        ax.plot(*np.stack((start, tip)).T, color=colour, linewidth=4.2, solid_capstyle="round")
+
+
+def _ball(ax: Axes3D, place: Array, colour: str) -> None:
+    """Draw a spherical joint."""
+    ax.scatter(*place, s=34, color=colour, edgecolor="white", linewidth=0.8, zorder=5)
 
 
 def _rod(
@@ -78,12 +103,17 @@ def _rod(
 
 def _cylinder(
     ax: Axes3D, anchor: Array, foot: Array, direction: Array, colour: str, size: float
-) -> Array:
-    """Draw a cylindrical joint on its line through anchor and foot; return the line's ends."""
-    most = MOST_OF_LINE * size
-    places = np.sort(np.clip([(anchor - foot) @ direction, 0.0], -most, most))
-    ends = foot + (places + LINE_EXTENSION * size * np.array([-1.0, 1.0]))[:, None] * direction
+) -> None:
+    """Draw a cylindrical joint on its line through anchor and foot."""
+    ends = _ends(anchor, foot, direction, size)
     ax.plot(*ends.T, color=colour, linewidth=0.9, linestyle=(0, (4, 3)))
     bar = foot + CYLINDER_LENGTH * size * np.array([[-0.5], [0.5]]) * direction
     ax.plot(*bar.T, color=colour, linewidth=7.0, solid_capstyle="butt")
-    return np.asarray(ends)
+
+
+def _ends(anchor: Array, foot: Array, direction: Array, size: float) -> Array:
+    """Return the two ends of the line of a cylindrical joint, as far as it is drawn."""
+    most = MOST_OF_LINE * size
+    places = np.sort(np.clip([(anchor - foot) @ direction, 0.0], -most, most))
+    beyond = LINE_EXTENSION * size * np.array([-1.0, 1.0])
+    return np.asarray(foot + (places + beyond)[:, None] * direction)

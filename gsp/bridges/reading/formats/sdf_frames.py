@@ -148,7 +148,7 @@ def freedoms_of(
     file: XmlFile, node: Node, place: Pose, frames: Places, version: Version
 ) -> list[Freedom]:
     """Return the freedoms of a joint whose frame is at `place`."""
-    kind, name = file.attribute(node, "type"), file.attribute(node, "name")
+    kind, name = file.attribute(node, "type").lower(), file.attribute(node, "name")
     if kind not in KINDS:
         file.fail(node, "type", "one of " + ", ".join(KINDS), brief(kind))
     found = []

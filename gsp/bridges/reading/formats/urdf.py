@@ -84,15 +84,15 @@ def _driven(file: XmlFile, names: set[str]) -> set[str]:
         (file.root.findall("ros2_control/transmission"), False),
     ):
         joints = nodes if nodes is commanded else _with_motors(file, nodes)
-        stated = {file.attribute(node, "name") for node in joints}
-        for name in sorted(stated - names):
-            file.fail(nodes[0], "<joint>", "the name of a joint", brief(name))
-        other = found ^ stated if all_of_them else stated - found
+        stated = {file.attribute(node, "name"): node for node in joints}
+        for name in sorted(stated.keys() - names):
+            file.fail(stated[name], "name", "the name of a joint", brief(name))
+        other = found ^ stated.keys() if all_of_them else stated.keys() - found
         for name in sorted(other if found and stated else ()):
             wanted = "the joints that have an actuator in the rest of the file"
             got = f"{'none' if name in found else 'one'} for {brief(name)}"
-            file.fail(nodes[0], "", wanted, got)
-        found |= stated
+            file.fail(stated.get(name, nodes[0]), "", wanted, got)
+        found |= stated.keys()
     return found
 
 

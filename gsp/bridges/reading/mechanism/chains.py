@@ -25,7 +25,7 @@ class Step(NamedTuple):
 
 
 class Path(NamedTuple):
-    """The freedoms of a leg from base to platform, and the gap of its loop."""
+    """The names of the joints of a leg, its freedoms from base to platform, and its loop's gap."""
 
     names: str
     freedoms: tuple[Freedom, ...]
@@ -225,7 +225,7 @@ def _path(base: str, platform: str, steps: Sequence[Step], groups: Groups) -> Pa
             shift = link.shift.compose(shift)
         at = far
     shift = groups.across(at, platform, shift)
-    return Path(" ".join(step.link.name for step in steps), tuple(freedoms), shift)
+    return Path(", ".join(dict.fromkeys(x.name for x in freedoms)), tuple(freedoms), shift)
 
 
 def _seen(freedom: Freedom, shift: Pose, sign: float) -> Freedom:

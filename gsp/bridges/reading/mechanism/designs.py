@@ -58,7 +58,7 @@ def design_of(linkage: Linkage, name: str | None = None, *, chosen: bool = False
         for leg, chain in zip(legs, chains, strict=True)
     ]
     feet = [anchors_on_platform(leg.base, Pose(np.zeros(3)), base) for leg in legs]
-    return Design(
+    design = Design(
         [in_axes(leg.drive, base.rotation) if leg.drive else leg.constraints for leg in legs],
         np.array([x.point for x in feet]),
         np.array([x.point for x in heads]),
@@ -69,12 +69,22 @@ def design_of(linkage: Linkage, name: str | None = None, *, chosen: bool = False
         unit="m",
         name=linkage.name if name is None else name,
     )
+    _check_home(design)
+    return design
 
 
 def _size(chain: Path) -> float:
     """Return the largest distance of a joint of a leg from the first one [m]."""
     points = np.array([x.point for x in chain.freedoms])
     return float(norm(points - points[0]).max())
+
+
+def _check_home(design: Design) -> None:
+    """Refuse a pose in which a leg is undefined: what its slide counts is then not known."""
+    undefined = design.at(design.home).undefined if design.home is not None else ()
+    for one in undefined:
+        got = f"{one.joint}, where {one.reason}"
+        raise InvalidInput(expected("model", "a pose in which all legs are defined", got))
 
 
 def _check_guides(chains: Chains, size: float) -> None:
@@ -84,7 +94,9 @@ def _check_guides(chains: Chains, size: float) -> None:
         free = rank(link.freedoms, size)
         if free < FREEDOMS or driven:
             kinds = ", ".join(f"{x.kind} {brief(x.name)}" for x in link.freedoms)
-            got = f"a joint of {free} freedoms ({kinds})" + (", which is driven" if driven else "")
+            freedoms = "1 degree" if free == 1 else f"{free} degrees"
+            got = f"a joint of {freedoms} of freedom ({kinds})"
+            got += ", which is driven" if driven else ""
             wanted = f"nothing but the legs that holds the platform {brief(chains.platform)}"
             raise InvalidInput(expected(link.where or brief(link.name), wanted, got))
 
