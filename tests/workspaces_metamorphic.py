@@ -40,7 +40,7 @@ def _around(given):
 def section_ends(given):
     """Distances of the ends of rays in a plane."""
     origin, axes = _plane(given)
-    rays = np.arange(6) * np.pi / 3 + 0.1
+    rays = np.arange(3) * 2.0 * np.pi / 3 + 0.1
     found = workspace.section(
         _around(given),
         origin,
@@ -66,7 +66,7 @@ def surface_ends(given):
         _around(given),
         given.pose.position[0],
         rotation=given.pose.rotation[0],
-        counts=(3, 3),
+        counts=(2, 3),
         starts=1,
     )
     return found.distance.ravel()
