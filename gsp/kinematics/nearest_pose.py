@@ -39,6 +39,9 @@ SEARCH_TOLERANCE = 1e-6
 # How far drives at the base must reach beyond a pose that is found [sizes], and how far the angle
 # of a crank that ends at π is from it [rad]: above the tolerance of limits.
 LEAST_REACH = 1e-8
+# Distance of a given pose from the home pose, or from the centre of the base anchors [sizes] beyond
+# which its square has too few digits for the searches.
+FARTHEST = 1e3
 TURN = 2.0 * np.pi
 # Legs whose assembly modes are found in milliseconds.
 QUICK_MODES = "D1^6"
@@ -128,7 +131,8 @@ def nearest(
     MissingParameter
         If nothing limits the design: drives at the base alone do not count.
     InvalidInput
-        On other types or shapes.
+        On other types or shapes, or for a pose that is farther than 1000 sizes from the home pose,
+        or from the centre of the base anchors if there is none.
 
     *Source: ours, by sequential quadratic programming, feasible descent and Newton's method.*
 
@@ -154,6 +158,10 @@ def nearest(
     small = centred_limits(design, given)
     target = small.pose_from(pose)
     exact = _Search(small, target)
+    away = float(norm(exact.step_to(small.design.home or Pose(np.zeros(3)))[:3]))
+    if away > FARTHEST:
+        wanted = f"a pose within {FARTHEST:g} sizes (rms_radius) of the home pose or the base"
+        raise InvalidInput(expected("pose", wanted, f"one at {away:.3g}"))
     if (exact.slacks(np.zeros(6), 0.0) >= 0.0).all():
         return Nearest(pose=pose, distance=0.0, starts=1)
     rough = _Search(small.rounded(), Pose(rounded(target.position), target.rotation))

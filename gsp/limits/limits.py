@@ -79,8 +79,9 @@ class Limits(ReadOnly):
     Raises
     ------
     InvalidInput
-        On arrays of another shape, intervals that cross, cones outside of (0, π/2], axes of zero,
-        numbers that are not positive, or texts that are not thresholds.
+        On arrays of another shape, intervals that cross or, but for strokes, have no width, cones
+        outside of (0, π/2], axes of zero, numbers that are not positive, or texts that are not
+        thresholds.
     UnknownIndex
         If a threshold names no index.
 

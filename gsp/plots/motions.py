@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gsp import arguments
 from gsp.bridges import Solids, render_motion
-from gsp.checks import check_items, check_type, is_a
+from gsp.checks import check_integer, check_items, check_type, is_a
 from gsp.determinant import Maximum
 from gsp.errors import InvalidInput, UndefinedPosture, brief, expected
 from gsp.figures import INK, require_matplotlib, style
@@ -244,6 +244,9 @@ class _Pictures(ReadOnly):
     shown: NDArray[np.int64]  # the pose of each picture
 
     def __call__(self, frame: int) -> None:
+        if check_integer("frame", frame, least=0) >= len(self.shown):
+            wanted = f"the number of one of {len(self.shown)} pictures, from 0"
+            raise InvalidInput(expected("frame", wanted, brief(frame)))
         self.scene.draw(frame)
         for pointer in self.pointers:
             pointer.move(int(self.shown[frame]))

@@ -98,7 +98,8 @@ def eigenscrews(stiffness: ArrayLike) -> Eigenscrews:
     # In the length that makes the traces of both diagonal blocks equal.
     traces = [np.trace(matrix[..., s, s], axis1=-2, axis2=-1) for s in (slice(3), slice(3, 6))]
     if min(trace.min(initial=np.inf) for trace in traces) <= 0.0:
-        raise InvalidInput(expected("stiffness", "positive definite matrices", "a trace ≤ 0"))
+        got = "one with a trace ≤ 0 of forces or of moments (of a singular posture?)"
+        raise InvalidInput(expected("stiffness", "positive definite matrices", got))
     length = np.sqrt(traces[1] / traces[0])
     units = np.stack([np.ones_like(length)] * 3 + [1.0 / length] * 3, axis=-1)
     matrix = matrix * units[..., :, None] * units[..., None, :]

@@ -18,6 +18,7 @@ from gsp.model.posture import Posture
 from gsp.model.posture.assembled import finite_rows
 from gsp.model.posture.derivatives import rows_and_derivatives
 from gsp.model.posture.evaluated import arm_of_centre
+from gsp.model.posture.statics import forces_or_nan
 
 
 def stiffness(
@@ -178,7 +179,7 @@ def _unit_wrench(direction: ArrayLike) -> Array:
     size = np.where(turns, norm(moment)[..., None], norm(force)[..., None])
     if (size < 1.0 / LARGEST_NUMBER).any():
         wanted = f"a direction of a size of at least {1.0 / LARGEST_NUMBER:g}"
-        raise InvalidInput(expected("direction", wanted, f"{float(size.min()):g}"))
+        raise InvalidInput(expected("direction", wanted, f"{np.abs(given).max(axis=-1).min():g}"))
     zeros = np.zeros((*given.shape[:-1], 6 - given.shape[-1]))
     return np.concatenate((given / size, zeros), axis=-1)
 
@@ -222,7 +223,7 @@ def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> A
 
 def _change_by_preload(posture: Posture, preload: ArrayLike) -> Array:
     """Return Σ fᵢ ∂Jᵢ/∂x (..., 6, 6) for the actuator forces f that balance a wrench."""
-    forces = posture.actuator_forces(bounded_array("preload", preload, (6,)))
+    forces = posture.actuator_forces(forces_or_nan("preload", preload, 6))
     return np.asarray((forces[..., None, None] * rows_and_derivatives(posture)[1]).sum(axis=-3))
 
 

@@ -278,4 +278,5 @@ def holding_forces(
     >>> round(float(forces[0] * 6 * 1.2 / d.at(d.home).joints[0]), 9) == 60 * 9.81
     True
     """
-    return design.at(pose).actuator_forces(gravity_wrench(design, pose, masses, gravity))
+    wrench = gravity_wrench(design, pose, masses, gravity)
+    return design.at(pose).actuator_forces(wrench)

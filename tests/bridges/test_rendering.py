@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import gsp
+
 pytest.importorskip("mujoco")
 
 # One process per try, because mujoco looks at MUJOCO_GL once, when it is imported.
@@ -78,3 +80,11 @@ def test_the_committed_picture_has_its_script(name):
     folder = Path(__file__).parents[2] / "docs" / "images"
     assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG")
     assert (folder / f"{name}.py").is_file()
+
+
+@pytest.mark.parametrize("wrong", [None, "toz-kucuk-2016-d3-6", 1.0])
+def test_what_is_no_design_is_not_drawn(wrong):
+    pose = gsp.Pose([0.0, 0.0, 1.0])
+    for draw, poses in ((gsp.bridges.render, pose), (gsp.bridges.render_motion, pose.reshape(1))):
+        with pytest.raises(gsp.errors.InvalidInput, match=r"design: expected a gsp\.Design"):
+            draw(wrong, poses)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.errors import EmptyWorkspace
+from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.geometry import Pose
 from gsp.kinematics import nearest_pose
 from tests.campaign import some
@@ -144,6 +144,16 @@ def test_random_poses_are_tried_where_no_search_ends_at_an_allowed_one(monkeypat
     found = gsp.nearest(design, away, limits)
     assert gsp.feasible(design, found.pose, gsp.Limits(strokes=[[1.6 - 1e-8, 2.3 + 1e-8]] * 6)).ok
     assert 1 <= found.starts <= nearest_pose.NEAREST_SAMPLES
+
+
+def test_poses_too_far_for_the_searches_are_refused():
+    """A distance is then known to fewer digits than the steps beside it have."""
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5, strokes=(1.5, 2.5))
+    for z in (1e5, 1e99):
+        with pytest.raises(InvalidInput, match="pose: expected a pose within 1000 sizes"):
+            gsp.nearest(design, Pose([0.0, 0.0, z]))
+    found = gsp.nearest(design, Pose([0.0, 0.0, 900.0]))
+    np.testing.assert_allclose(design.at(found.pose).joints, 2.5, atol=1e-8)
 
 
 def test_the_distance_is_that_of_the_size_where_an_index_keeps_the_unit():

@@ -117,6 +117,12 @@ def test_files_have_all_pictures_and_last_as_long_as_asked(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "a.html"]
 
 
+@pytest.mark.parametrize("number", [7, -1, 1.5, True, None, "0", slice(0, 2), [0, 1]])
+def test_numbers_of_no_picture_are_refused(number):
+    with pytest.raises(InvalidInput, match="frame: expected"):
+        gsp.plots.animate(LIFT, TURN).show(number)
+
+
 @pytest.mark.parametrize(("seconds", "frames"), [(0.33, 14), (1.15, 7)])
 def test_a_gif_lasts_as_long_as_the_film(seconds, frames, tmp_path):
     """Times of pictures are hundredths of a second, and not all equal."""

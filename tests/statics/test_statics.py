@@ -343,6 +343,15 @@ def test_torques_beside_forces_cost_no_digits_of_redundant_designs(unit):
             np.testing.assert_allclose(found * 1e3, right, **nearly)
 
 
+def test_a_preload_of_a_posture_that_is_undefined_is_nan():
+    poses = gsp.Pose([TEMPLATE.home.position] * 2)
+    preload = np.ones((2, 6))
+    preload[1, 0] = np.nan
+    found = gsp.stiffness(TEMPLATE, poses, 1.0, preload=preload)
+    alone = gsp.stiffness(TEMPLATE, poses[0], 1.0, preload=preload[0])
+    np.testing.assert_array_equal(found, [alone, np.full((6, 6), np.nan)])
+
+
 @pytest.mark.parametrize("k", [0.0, -1.0, np.nan, [1.0, 2.0], "stiff", None, [[1.0] * 6] * 3])
 def test_bad_stiffnesses_are_refused(k):
     with pytest.raises(InvalidInput, match=r"^k\b.*: expected"):

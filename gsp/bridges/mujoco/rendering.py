@@ -62,6 +62,7 @@ def render(
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
     """
+    check_type("design", design, Design)
     check_type("pose", pose, Pose)
     if pose.shape:
         raise InvalidInput(expected("pose", "a single pose", f"a batch of shape {pose.shape}"))
@@ -114,6 +115,7 @@ def render_motion(
     UndefinedPosture, MissingParameter
         See `to_mjcf`.
     """
+    check_type("design", design, Design)
     check_type("poses", poses, Pose)
     if len(poses.shape) != 1 or not poses.size:
         wanted = "poses of shape (n,), n ≥ 1"

@@ -23,6 +23,7 @@ from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import FailedComputation, InvalidInput, apart, expected
 from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.frames.screws import exp3
+from gsp.geometry.matrices import singular_values
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, unit
 from gsp.model.design import Design
@@ -42,6 +43,8 @@ OPEN_LOOP = 3e-4
 # How far a rod leans to the other side of a dead centre where a branch is another, over the gap of
 # its loop.
 DEAD_CENTRE = 4.0
+# Least singular value of an end that is on one side of all singular postures, over the same gap.
+NEARLY_SINGULAR = 20.0
 
 
 @read_only_tuple
@@ -62,7 +65,9 @@ class Simulation(NamedTuple):
     passed : bool or None
         Whether det J has another sign than at the start: the platform went through a singular
         posture, perhaps to another assembly mode than the one to which `gsp.track` leads. None of
-        other than six actuators, and where the start or the end is singular.
+        other than six actuators, and where the start or the end is singular, as far as open loops
+        leave that known: the least singular value, of rows of length one, is below 20 gaps (shares
+        of the size, or in rad).
     """
 
     pose: Pose
@@ -120,7 +125,8 @@ def simulate(
         not the targets.
     InvalidInput
         If the pose or `joints` is beyond the strokes of the design, or a target is negative for a
-        distance, or outside [0, π] for an angle between lines or [−π, π] for a crank with a stroke.
+        distance, or outside [0, π] for an angle between lines or [−π, π] for a crank with a stroke
+        of less than a turn.
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
 
@@ -142,8 +148,8 @@ def simulate(
     scale = metres_of(design, solids)
     change = np.zeros(model.nu)
     if joints is not None:
-        given = check_array("joints", joints, (model.nu,))
-        if given.ndim != 1:
+        given = check_array("joints", joints, ())
+        if given.shape != (model.nu,):
             raise InvalidInput(expected("joints", f"shape ({model.nu},)", f"shape {given.shape}"))
         check_within(design, "joints", given)
         change = _changes(design, given * scale, data.actuator_length)
@@ -167,12 +173,13 @@ def simulate(
     found = Pose.from_quaternion(placed.xpos / metres, np.roll(placed.xquat, -1))
     reached = _in_one_turn(design, np.array(data.actuator_length)) / scale
     _check_branches(design, found, reached, gaps / metres)
+    open_by = max(gaps.max() / (design.rms_radius * metres), turns.max(initial=0.0))
     return Simulation(
         found.compose(Pose(-centre)),
         reached,
         largest_gap(data),
         largest_speed(model, data),
-        _passed(design.at(pose), design.at(found)),
+        _passed(design.at(pose), design.at(found), open_by),
     )
 
 
@@ -220,14 +227,19 @@ def _check_branches(design: Design, pose: Pose, joints: Array, gaps: Array) -> N
             raise FailedComputation(expected("simulate", wanted, got))
 
 
-def _passed(start: Posture, end: Posture) -> bool | None:
-    """Whether det J changed its sign between two postures; None where it has none."""
+def _passed(start: Posture, end: Posture, open_by: float) -> bool | None:
+    """Whether det J changed its sign between two postures; None where it is not known.
+
+    `open_by` is how far a loop is open at the end, as a share of the size or in rad.
+    """
     matrices = np.stack((start.about_centre, end.about_centre))
     if matrices.shape[-2] != matrices.shape[-1] or start.singular() or end.singular():
         return None
-    with np.errstate(invalid="ignore"):
-        signs = np.linalg.slogdet(matrices)[0]
-    return bool(signs[0] != signs[1]) if signs.all() and np.isfinite(signs).all() else None
+    rows = unit(matrices[1])  # those of cranks are long where the drive is nearly singular
+    if not singular_values(rows).min() > NEARLY_SINGULAR * open_by:
+        return None
+    signs = np.linalg.slogdet(matrices)[0]
+    return bool(signs[0] != signs[1])
 
 
 def _changes(design: Design, targets: Array, start: Array) -> Array:
