@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gsp.checks import check_integer, check_memory, check_rng, check_type
-from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.errors import EmptyWorkspace, InvalidInput, apart, expected
 from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.screws import exp3, exp3_rates, log3
@@ -117,8 +117,9 @@ def nearest(
         Generator or seed of the random starts.
     progress : function (done, total), bool or None
         Called with the number of searches; see `gsp.evaluate`. They take a second together as a
-        rule; a minute or two may pass where few poses or none satisfy thresholds on indices, and
-        with such thresholds for redundant designs or drives.
+        rule, half a minute for poses many sizes away; a minute or two may pass where few poses or
+        none satisfy thresholds on indices, and with such thresholds for redundant designs or
+        drives.
 
     Returns
     -------
@@ -160,8 +161,9 @@ def nearest(
     exact = _Search(small, target)
     away = float(norm(exact.step_to(small.design.home or Pose(np.zeros(3)))[:3]))
     if away > FARTHEST:
-        wanted = f"a pose within {FARTHEST:g} sizes (rms_radius) of the home pose or the base"
-        raise InvalidInput(expected("pose", wanted, f"one at {away:.3g}"))
+        got, most = apart(away, FARTHEST)
+        wanted = f"a pose within {most} sizes (rms_radius) of the home pose or the base"
+        raise InvalidInput(expected("pose", wanted, f"one at {got}"))
     if (exact.slacks(np.zeros(6), 0.0) >= 0.0).all():
         return Nearest(pose=pose, distance=0.0, starts=1)
     rough = _Search(small.rounded(), Pose(rounded(target.position), target.rotation))

@@ -152,6 +152,8 @@ def test_poses_too_far_for_the_searches_are_refused():
     for z in (1e5, 1e99):
         with pytest.raises(InvalidInput, match="pose: expected a pose within 1000 sizes"):
             gsp.nearest(design, Pose([0.0, 0.0, z]))
+    with pytest.raises(InvalidInput, match=r"within 1000 sizes .* received one at 1000\.5"):
+        gsp.nearest(design, Pose(design.home.position + [1000.5 * design.rms_radius, 0.0, 0.0]))
     found = gsp.nearest(design, Pose([0.0, 0.0, 900.0]))
     np.testing.assert_allclose(design.at(found.pose).joints, 2.5, atol=1e-8)
 
