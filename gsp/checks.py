@@ -132,7 +132,7 @@ def check_array(
 ) -> Array:
     """Return `value` as float64 if its last axes are `shape` (None: any size), else raise.
 
-    It has at most `axes` axes, where that is given.
+    It has at most `axes` axes, where that is given: with as many as `shape` has, just this shape.
 
     Raises
     ------
@@ -197,17 +197,20 @@ def _check_shape(
     what: str, given: tuple[int, ...], shape: Sequence[int | None], axes: int | None
 ) -> None:
     """Raise InvalidInput unless the last of at most `axes` axes are `shape`, None for any size."""
-    if axes is not None and len(given) > axes:
+    batched = axes is None or axes > len(shape)
+    if axes is not None and len(given) > axes and batched:
         wanted = "one number, or one axis of them" if axes == 1 else f"at most {axes} axes"
         raise InvalidInput(expected(what, wanted, f"shape {given}"))
     if len(given) > len(shape) + MOST_BATCH_AXES:
         got = f"{len(given)} axes"
         raise InvalidInput(expected(what, f"at most {len(shape) + MOST_BATCH_AXES} axes", got))
-    last = given[len(given) - len(shape) :] if len(given) >= len(shape) else None
+    fits = len(given) >= len(shape) if batched else len(given) == len(shape)
+    last = given[len(given) - len(shape) :] if fits else None
     if last is None or any(w is not None and w != g for w, g in zip(shape, last, strict=True)):
-        wanted = ", ".join("n" if w is None else str(w) for w in shape)
-        dots = ", ".join(("...", wanted)) if shape else "..."
-        raise InvalidInput(expected(what, f"shape ({dots})", f"shape {given}"))
+        sizes = ["..."] * batched + ["n" if w is None else str(w) for w in shape]
+        comma = "," if len(sizes) == 1 and not batched else ""
+        wanted = f"shape ({', '.join(sizes)}{comma})"
+        raise InvalidInput(expected(what, wanted, f"shape {given}"))
 
 
 def _check_lengths(what: str, value: Any, shape: Sequence[int | None], axes: int | None) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 import gsp
 from gsp import sweeps, workspace
+from tests import campaign
 
 ROUNDING = 1e-9  # share of the size: ends of rays solve their equations to 1e-9 of it
 
@@ -40,7 +41,8 @@ def _around(given):
 def section_ends(given):
     """Distances of the ends of rays in a plane."""
     origin, axes = _plane(given)
-    rays = np.arange(3) * 2.0 * np.pi / 3 + 0.1
+    number = campaign.count(3, 6)
+    rays = np.arange(number) * 2.0 * np.pi / number + 0.1
     found = workspace.section(
         _around(given),
         origin,
@@ -66,7 +68,7 @@ def surface_ends(given):
         _around(given),
         given.pose.position[0],
         rotation=given.pose.rotation[0],
-        counts=(2, 3),
+        counts=(campaign.count(2, 3), 3),
         starts=1,
     )
     return found.distance.ravel()

@@ -305,29 +305,45 @@ def test_a_motion_to_the_other_branch_of_a_drive_is_refused(rod):
         simulate(design, design.home, joints, duration=1.0)
 
 
-@pytest.mark.parametrize("kind", ["D3", "D4"])
-def test_a_distance_that_passes_zero_is_refused(kind):
-    """A seventh leg measures x + 0.02 along a line; the six others lead beyond its zero."""
+def measured(constraint, anchor, axis, direction):
+    """Simulated motions, along a direction, of a hexapod with a seventh leg, which has a target."""
     lift = gsp.hexapod(1.0, 0.3, 0.6, 0.4, 1.2, unit="m")
     design = gsp.Design(
-        ["D1"] * 6 + [kind],
+        ["D1"] * 6 + [constraint],
         [*lift.base_points, [0.0, 0.0, 0.2]],
-        [*lift.platform_points, [0.02, 0.0, -0.2]],
+        [*lift.platform_points, anchor],
         base_directions=[[0.0, 0.0, 1.0]] * 7,
-        platform_directions=[[0.0, 0.6, 0.8]] * 7,
+        platform_directions=[axis] * 7,
         home=lift.home,
         unit="m",
     )
-    for x, refused in ((-0.01, False), (-0.06, True)):
-        lengths = lift.at(gsp.Pose([x, 0.0, 1.2])).joints
-        joints = [*lengths, max(x + 0.02, 0.0)]
-        if refused:
-            with pytest.raises(FailedComputation, match="on which d7 passed 0"):
-                simulate(design, design.home, joints, gravity=[0.0, 0.0, 0.0])
-            continue
-        found = simulate(design, design.home, joints, gravity=[0.0, 0.0, 0.0])
-        assert found.joints[6] == pytest.approx(0.01, abs=1e-6)
-        assert found.passed is None
+
+    def moved(step, target):
+        pose = lift.home.moved(step * np.array(direction))
+        joints = [*lift.at(pose).joints, target]
+        return simulate(design, design.home, joints, gravity=[0.0, 0.0, 0.0])
+
+    return moved
+
+
+@pytest.mark.parametrize("constraint", ["D3", "D4"])
+def test_a_distance_that_passes_zero_is_refused(constraint):
+    """It is x + 0.02."""
+    moved = measured(constraint, [0.02, 0.0, -0.2], [0.0, 0.6, 0.8], [1, 0, 0, 0, 0, 0])
+    found = moved(-0.01, 0.01)
+    assert found.joints[6] == pytest.approx(0.01, abs=1e-6)
+    assert found.passed is None
+    with pytest.raises(FailedComputation, match="on which d7 passed 0"):
+        moved(-0.06, 0.0)
+
+
+def test_an_angle_between_lines_that_passes_zero_is_refused():
+    """The axis of the platform is at 0.3 rad from that of the base, and turns towards it."""
+    axis = [0.0, np.sin(0.3), np.cos(0.3)]
+    moved = measured("A1", [0.02, 0.3, -0.2], axis, [0, 0, 0, 1, 0, 0])
+    assert moved(0.2, 0.1).joints[6] == pytest.approx(0.1, abs=1e-6)
+    with pytest.raises(FailedComputation, match="on which theta7 passed 0"):
+        moved(0.31, 0.0)
 
 
 @pytest.mark.parametrize(("frequency", "passed"), [(300.0, False), (2.0, True)])
@@ -339,7 +355,7 @@ def test_a_platform_that_falls_through_its_base_has_passed_a_singular_posture(fr
     assert found.passed is passed
 
 
-def test_on_which_side_of_a_singular_posture_an_end_is_may_not_be_known():
+def test_beside_a_singular_posture_it_is_not_known_whether_it_was_passed():
     """Turned by 90° the design is singular, and in the first step loops open by some 1e-8."""
     lift = gsp.hexapod(1.0, 0.3, 0.6, 0.4, 1.2, unit="m")
     for beside, known in ((0.1, True), (1e-6, False)):

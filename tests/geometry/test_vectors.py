@@ -131,6 +131,15 @@ def test_error_of_check_array_states_the_shape(value, shape, wanted):
         check_array("x", value, shape)
 
 
+@pytest.mark.parametrize("value", [1.0, [1, 2], [[1, 2, 3]], [[1, 2, 3]] * 2, np.zeros((2, 2, 3))])
+def test_an_array_of_as_many_axes_as_its_shape_is_no_batch(value):
+    assert check_array("x", [1, 2, 3], (3,), axes=1).shape == (3,)
+    with pytest.raises(InvalidInput, match=r"x: expected shape \(3,\), received shape"):
+        check_array("x", value, (3,), axes=1)
+    with pytest.raises(InvalidInput, match=r"x: expected shape \(n, 3\), received shape \(3,\)"):
+        check_array("x", [1, 2, 3], (None, 3), axes=2)
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 def test_error_of_check_array_states_where_it_is_not_finite(bad):
     with pytest.raises(InvalidInput, match=r"x \(at index \[1, 2\]\): expected finite numbers"):

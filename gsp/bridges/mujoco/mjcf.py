@@ -119,9 +119,7 @@ def to_mjcf(
     bodies = capsules(design, chains, solids)
     _check_masses(bodies, unit)
     _check_reach(chains, design.rms_radius)
-    down = check_array("gravity", gravity, ())
-    if down.shape != (3,):
-        raise InvalidInput(expected("gravity", "shape (3,)", f"shape {down.shape}"))
+    down = check_array("gravity", gravity, (3,), axes=1)
     frequency = check_positive("servo_frequency", servo_frequency)
     frequency = arguments.number("servo_frequency", frequency)  # its square is finite
     mass = sum(c.mass for name, parts in bodies.items() if name not in FIXED for c in parts)

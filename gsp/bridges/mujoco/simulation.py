@@ -14,7 +14,6 @@ from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.mujoco.program import (
     compiled,
     gaps_of,
-    largest_gap,
     largest_speed,
     load_mujoco,
     silent,
@@ -40,8 +39,8 @@ MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
 # Open loops, as a share of the size or in rad, above which a state is none of the design. Under
 # gravity, held or moved to what can be reached, they are open by less than 1e-4.
 OPEN_LOOP = 3e-4
-# How far a rod leans to the other side of a dead centre where a branch is another, over the gap of
-# its loop.
+# How far a rod leans to the other side of a dead centre where a branch is another, or a joint value
+# is beyond those that it can have, over the gap of its loop.
 DEAD_CENTRE = 4.0
 # Least singular value of an end that is on one side of all singular postures, over the same gap.
 NEARLY_SINGULAR = 20.0
@@ -148,9 +147,7 @@ def simulate(
     scale = metres_of(design, solids)
     change = np.zeros(model.nu)
     if joints is not None:
-        given = check_array("joints", joints, ())
-        if given.shape != (model.nu,):
-            raise InvalidInput(expected("joints", f"shape ({model.nu},)", f"shape {given.shape}"))
+        given = check_array("joints", joints, (model.nu,), axes=1)
         check_within(design, "joints", given)
         change = _changes(design, given * scale, data.actuator_length)
     longest = MOST_SIMULATED * model.opt.timestep
@@ -168,48 +165,52 @@ def simulate(
     mujoco.mj_forward(model, data)
     metres = check_solids(solids).unit(design)
     gaps, turns = gaps_of(data)
-    _check_closed(gaps, turns, OPEN_LOOP * design.rms_radius * metres)
+    gap, turn = gaps.max(), turns.max(initial=0.0)
+    _check_closed(gap, turn, OPEN_LOOP * design.rms_radius * metres)
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos / metres, np.roll(placed.xquat, -1))
     reached = _in_one_turn(design, np.array(data.actuator_length)) / scale
-    _check_branches(design, found, reached, gaps / metres)
-    open_by = max(gaps.max() / (design.rms_radius * metres), turns.max(initial=0.0))
+    margins = DEAD_CENTRE * gaps[[leg for leg, _ in design.rows]] / metres
+    _check_ranges(design, reached, margins)
+    _check_branches(design, found, reached, margins)
+    open_by = max(gap / (design.rms_radius * metres), turn)
     return Simulation(
         found.compose(Pose(-centre)),
         reached,
-        largest_gap(data),
+        float(max(gap, turn)),
         largest_speed(model, data),
         _passed(design.at(pose), design.at(found), open_by),
     )
 
 
-def _check_closed(gaps: Array, turns: Array, longest: float) -> None:
+def _check_closed(gap: float, turn: float, longest: float) -> None:
     """Raise FailedComputation if a loop is open by more than a length [m], or than OPEN_LOOP."""
-    for gap, most, name in (
-        (gaps.max(), longest, "m"),
-        (turns.max(initial=0.0), OPEN_LOOP, "rad"),
-    ):
-        if gap > most:
+    for open_by, most, name in ((gap, longest, "m"), (turn, OPEN_LOOP, "rad")):
+        if open_by > most:
             wanted = "targets that the legs reach together, and time to get there"
-            got = f"a loop that is open by {gap:.3g} {name} (most: {most:.3g})"
+            got = f"a loop that is open by {open_by:.3g} {name} (most: {most:.3g})"
             raise FailedComputation(expected("simulate", wanted, got))
 
 
-def _check_branches(design: Design, pose: Pose, joints: Array, gaps: Array) -> None:
-    """Raise FailedComputation if a rod leans to the side of the other branch of its drive.
+def _check_ranges(design: Design, joints: Array, margins: Array) -> None:
+    """Raise FailedComputation for distances below zero, and angles not from 0 to π between lines.
 
-    So do distances below zero, and angles between lines that are not from 0 to π, of which the
-    design has others at the same pose. `gaps` is how far the loop of each leg is open, in the unit
-    of the design. What is beyond a limit by less than a few of them is at it, as far as that is
-    known.
+    The design has other values at the same pose. What is beyond by less than its margin (n,), in
+    the unit of the design, is at the end of the range, as far as that is known with open loops.
     """
-    margin = DEAD_CENTRE * gaps[[leg for leg, _ in design.rows]]
     low, high = joint_ranges(design).T
     beyond = np.maximum(low - joints, joints - high)
-    for k in np.flatnonzero(beyond * np.where(design.angular, design.rms_radius, 1.0) > margin):
+    for row in np.flatnonzero(beyond * np.where(design.angular, design.rms_radius, 1.0) > margins):
         wanted = "a motion on which distances and angles between lines are positive, angles below π"
-        got = f"one on which {design.joint_names[k]} passed {'0' if joints[k] < 0.0 else 'π'}"
+        got = f"one on which {design.joint_names[row]} passed {'0' if joints[row] < 0.0 else 'π'}"
         raise FailedComputation(expected("simulate", wanted, got))
+
+
+def _check_branches(design: Design, pose: Pose, joints: Array, margins: Array) -> None:
+    """Raise FailedComputation if a rod leans to the side of the other branch of its drive.
+
+    One that leans by less than its margin is at a dead centre, as far as that is known.
+    """
     for row, (leg, constraint) in enumerate(design.rows):
         drive = design.drives[leg]
         if drive is None or not constraint.driven:
@@ -221,7 +222,7 @@ def _check_branches(design: Design, pose: Pose, joints: Array, gaps: Array) -> N
             way = unit(cross(axis, tip))
         head = pose.position + pose.rotation @ design.platform_points[leg]
         lean = drive.branch * float((head - design.base_points[leg] - tip) @ way)
-        if lean < -margin[row]:
+        if lean < -margins[row]:
             wanted = "a motion on which drives keep their branches"
             got = f"one on which {design.joint_names[row]} passed a singular posture of its drive"
             raise FailedComputation(expected("simulate", wanted, got))

@@ -109,7 +109,7 @@ def _beside_or_in_model(keys: Keys, key: str) -> Keys:
     if key not in within.names():
         return keys
     if within is not keys and key in keys:
-        within[key].fail(f"one {key} in the file; another is beside `model`")
+        within[key].fail(f"{key} beside `model` or in it, not both")
     return within
 
 

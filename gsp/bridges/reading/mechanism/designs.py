@@ -14,6 +14,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import norm
 from gsp.model.design import Design
+from gsp.model.posture import Posture
 
 FREEDOMS = 6
 
@@ -58,6 +59,7 @@ def design_of(linkage: Linkage, name: str | None = None, *, chosen: bool = False
         for leg, chain in zip(legs, chains, strict=True)
     ]
     feet = [anchors_on_platform(leg.base, Pose(np.zeros(3)), base) for leg in legs]
+    home = base.inverse().compose(place)
     design = Design(
         [in_axes(leg.drive, base.rotation) if leg.drive else leg.constraints for leg in legs],
         np.array([x.point for x in feet]),
@@ -65,11 +67,11 @@ def design_of(linkage: Linkage, name: str | None = None, *, chosen: bool = False
         base_directions=np.array([x.line for x in feet]),
         platform_directions=np.array([x.line for x in heads]),
         strokes=_strokes(legs),
-        home=base.inverse().compose(place),
+        home=home,
         unit="m",
         name=linkage.name if name is None else name,
     )
-    _check_home(design)
+    _check_defined(design.at(home))
     return design
 
 
@@ -79,11 +81,10 @@ def _size(chain: Path) -> float:
     return float(norm(points - points[0]).max())
 
 
-def _check_home(design: Design) -> None:
-    """Refuse a pose in which a leg is undefined: what its slide counts is then not known."""
-    undefined = design.at(design.home).undefined if design.home is not None else ()
-    for one in undefined:
-        got = f"{one.joint}, where {one.reason}"
+def _check_defined(posture: Posture) -> None:
+    """Refuse a posture with an undefined leg: what its slide counts is then not known."""
+    if posture.undefined:
+        got = f"{posture.undefined[0].joint}, where {posture.undefined[0].reason}"
         raise InvalidInput(expected("model", "a pose in which all legs are defined", got))
 
 
