@@ -8,7 +8,6 @@ import sys
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from importlib.util import find_spec
 from itertools import chain, islice
 from types import UnionType
 from typing import Any, TypeGuard, TypeVar
@@ -16,7 +15,7 @@ from typing import Any, TypeGuard, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.errors import GspError, InvalidInput, MissingSoftware, brief, expected
+from gsp.errors import GspError, InvalidInput, brief, expected
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -39,42 +38,6 @@ MOST_LETTERS, MOST_LETTERS_OF_LINE = 100_000, 1000
 WHITESPACE = "\t\n\r"
 # Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
-
-
-def is_installed(module: str) -> bool:
-    """Whether a module can be found for import; it is not imported."""
-    return find_spec(module) is not None
-
-
-def check_installed(
-    package: str, purpose: str, extra: str = "", *, hint: str = "", module: str = ""
-) -> None:
-    """Raise MissingSoftware, with the way to install it, if a package is not installed.
-
-    Raises
-    ------
-    MissingSoftware
-    """
-    if not is_installed(module or package):
-        raise MissingSoftware(package, purpose, extra, hint)
-
-
-@contextmanager
-def optional(
-    package: str, purpose: str, extra: str = "", *, hint: str = "", module: str = ""
-) -> Iterator[None]:
-    """Enclose the import of a package that need not be installed, or that may fail to load.
-
-    Raises
-    ------
-    MissingSoftware
-        If it cannot be imported; the message has the way to install it.
-    """
-    check_installed(package, purpose, extra, hint=hint, module=module)
-    try:
-        yield
-    except ImportError as error:
-        raise MissingSoftware(package, purpose, extra, hint) from error
 
 
 @contextmanager

@@ -18,7 +18,7 @@ PACKAGE = ROOT / "gsp"
 # A module imports from lower rows, or from its own package as long as there is no cycle.
 LAYERS = (
     ("errors", "rounding", "version"),
-    ("checks", "progress"),
+    ("checks", "installed", "progress"),
     ("arguments", "figures"),
     ("files", "geometry"),
     ("model",),

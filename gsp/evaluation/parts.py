@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import optional
 from gsp.errors import InvalidInput, UnwritableOutput, expected
 from gsp.evaluation.settings import Job, provenance
 from gsp.files.claims import Claim, read_json
 from gsp.files.writing import check_writable, write_file, write_text
 from gsp.geometry.pose import Pose
+from gsp.installed import optional
 from gsp.model.design import toml_from_design
 from gsp.version import __version__
 

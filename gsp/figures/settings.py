@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from gsp.checks import check_installed
+from gsp.installed import check_installed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

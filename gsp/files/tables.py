@@ -12,9 +12,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from gsp.checks import check_installed
 from gsp.errors import UnknownName
 from gsp.files.writing import check_writable, followed, write_file, write_text
+from gsp.installed import check_installed
 from gsp.version import __version__
 
 if TYPE_CHECKING:

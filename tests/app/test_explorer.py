@@ -228,7 +228,7 @@ def test_bad_calls(given, message):
 
 
 def test_without_plotly_the_extra_is_named(monkeypatch):
-    monkeypatch.setattr("gsp.checks.is_installed", lambda package: package != "plotly")
+    monkeypatch.setattr("gsp.installed.is_installed", lambda package: package != "plotly")
     with pytest.raises(MissingSoftware, match=r"plotly.*gsp-mechanisms\[plots\]"):
         gsp.plots.explorer(TABLE, COLUMNS)
 

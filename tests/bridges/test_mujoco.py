@@ -433,7 +433,7 @@ def test_bad_options(options, message):
 
 
 def test_without_mujoco_the_extra_is_named(monkeypatch):
-    monkeypatch.setattr("gsp.checks.is_installed", lambda module: False)
+    monkeypatch.setattr("gsp.installed.is_installed", lambda module: False)
     with pytest.raises(MissingSoftware, match=r"gsp-mechanisms\[mujoco\]"):
         simulate(TWO, TWO.home)
     assert to_mjcf(TWO, TWO.home).startswith("<mujoco")

@@ -54,7 +54,7 @@ def test_a_port_in_use_is_an_error(gsp):
 
 
 def test_without_the_framework_the_extra_is_named(gsp, monkeypatch):
-    monkeypatch.setattr("gsp.checks.is_installed", lambda package: False)
+    monkeypatch.setattr("gsp.installed.is_installed", lambda package: False)
     assert 'pip install "gsp-mechanisms[app]"' in gsp("app").error
 
 

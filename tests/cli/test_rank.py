@@ -361,7 +361,7 @@ def test_unnamed_file_takes_its_own_name(gsp, tmp_path):
 
 
 def test_without_matplotlib(gsp, tmp_path, monkeypatch):
-    monkeypatch.setattr("gsp.checks.is_installed", lambda package: False)
+    monkeypatch.setattr("gsp.installed.is_installed", lambda package: False)
     result = gsp("rank", *TWO, "--samples", 4)
     assert result.status == 0
     assert 'pip install "gsp-mechanisms[plots]"' in result.err

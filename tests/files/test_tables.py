@@ -93,7 +93,7 @@ def test_nothing_is_overwritten(tmp_path, name):
 def test_unknown_suffix_and_missing_software(tmp_path, monkeypatch):
     with pytest.raises(UnwritableOutput, match=r"\.csv, \.parquet, \.xlsx, \.md, \.tex"):
         check_table(tmp_path / "t.xls")
-    monkeypatch.setattr("gsp.checks.is_installed", lambda package: False)
+    monkeypatch.setattr("gsp.installed.is_installed", lambda package: False)
     check_table(tmp_path / "t.csv")
     for form in FORMATS.values():
         if form.package:

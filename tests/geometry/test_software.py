@@ -20,7 +20,7 @@ from gsp.errors import MissingSoftware
 )
 def test_missing_pinocchio_is_named_with_its_installation(use, monkeypatch):
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
-    monkeypatch.setattr("gsp.checks.is_installed", lambda module: False)
+    monkeypatch.setattr("gsp.installed.is_installed", lambda module: False)
     with pytest.raises(MissingSoftware, match=r"pinocchio.*conda install -c conda-forge") as error:
         use(design)
     assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)

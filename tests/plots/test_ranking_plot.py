@@ -143,7 +143,7 @@ def test_invalid_tables_are_errors(table, monkeypatch):
         ranking(table, ["beauty"])
     with pytest.raises(InvalidInput, match="a ranking"):
         ranking(pd.DataFrame({"x": [1.0]}))
-    monkeypatch.setattr("gsp.checks.is_installed", lambda package: False)
+    monkeypatch.setattr("gsp.installed.is_installed", lambda package: False)
     with pytest.raises(MissingSoftware, match="matplotlib"):
         ranking(table)
 

@@ -27,7 +27,7 @@ from tests.published.test_published_inputs import changes, falls, recomputed
 # What reads and compares records, and checks arguments, is not part of a recomputation.
 NO_PART = ("gsp.published.checking", "gsp.published.computing", "gsp.published.record",
            "gsp.published.numbers",
-           "gsp.published.quantities", "gsp.arguments", "gsp.checks", "gsp.errors",
+           "gsp.published.quantities", "gsp.arguments", "gsp.checks", "gsp.installed", "gsp.errors",
            "gsp.files")  # fmt: skip
 
 

@@ -16,11 +16,12 @@ from gsp import arguments
 from gsp.app.explorer.content import check_numbers, content, default_columns
 from gsp.app.explorer.spaces import chosen_rows, designs_of_rows, packed_spaces
 from gsp.app.scene.pages import PageFigure, filled, scene_sources, scene_style, script_text
-from gsp.checks import check_installed, check_type, is_a
+from gsp.checks import check_type, is_a
 from gsp.errors import InvalidInput, expected
 from gsp.exploration.sides import Objectives, better_sides
 from gsp.exploration.space import Space
 from gsp.geometry.pose import Pose
+from gsp.installed import check_installed
 from gsp.model.design import Design
 from gsp.plots.common.style import BLUE, GREY, VERMILION
 from gsp.plots.common.tables import check_frame

@@ -10,9 +10,9 @@ from gsp.app.report import parts, proofs, tasks
 from gsp.app.report.study import Study, attempted, study_of
 from gsp.app.report.summary import place_text, summary
 from gsp.app.state.choices import shortened
-from gsp.checks import check_installed
 from gsp.exploration import Task
 from gsp.geometry.pose import Pose
+from gsp.installed import check_installed
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
 from gsp.version import __version__

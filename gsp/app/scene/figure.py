@@ -11,9 +11,10 @@ from gsp.app.scene.drawing import drawing, merit_colour, placement
 from gsp.app.scene.pages import WEB, PageFigure, filled, scene_sources, scene_style, script_text
 from gsp.app.state.reading import Reading, powers, read
 from gsp.app.state.session import Session, started
-from gsp.checks import check_installed, check_type
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
+from gsp.installed import check_installed
 from gsp.model.design import Design, check_undriven
 
 # The index that colours the platform.

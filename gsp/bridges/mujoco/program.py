@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.checks import optional
 from gsp.errors import GspError, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, Mask, norm
+from gsp.installed import optional
 
 if TYPE_CHECKING:
     import mujoco

@@ -8,11 +8,11 @@ import typer
 
 from gsp.catalogue import instantiate
 from gsp.catalogue.placement import TEMPLATE
-from gsp.checks import check_installed
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import Template, refuse_unused
 from gsp.cli.outputs.console import say
 from gsp.errors import InvalidInput, expected
+from gsp.installed import check_installed
 from gsp.model.design import Design
 from gsp.version import __version__
 

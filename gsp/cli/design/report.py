@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from gsp.checks import check_installed
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import (
     Angles,
@@ -25,6 +24,7 @@ from gsp.errors import InvalidInput
 from gsp.exploration import read_task
 from gsp.files.names import file_stem
 from gsp.files.writing import check_writable, write_text
+from gsp.installed import check_installed
 
 
 def report(

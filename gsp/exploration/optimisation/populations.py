@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from gsp.checks import optional
 from gsp.exploration.optimisation.evaluating import Evaluator
 from gsp.exploration.optimisation.goals import NO_MERIT
 from gsp.geometry.pose.intervals import sample_points
 from gsp.geometry.vectors import Array
+from gsp.installed import optional
 
 # Least size of a population, and designs per parameter.
 LEAST_POPULATION, DESIGNS_PER_PARAMETER = 20, 10

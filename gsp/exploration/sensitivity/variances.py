@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_memory, optional
+from gsp.checks import check_memory
 from gsp.errors import InvalidInput, expected
 from gsp.exploration.assessing import Run, assessed, checked, requested
 from gsp.exploration.exploring import DESIGN_BYTES, designs_of
@@ -18,6 +18,7 @@ from gsp.exploration.task import Task
 from gsp.exploration.toml import record_of
 from gsp.exploration.volumes import volumes
 from gsp.geometry.vectors import Array
+from gsp.installed import optional
 from gsp.progress import Progress
 from gsp.proof.extremes import ENDS_TOLERANCE
 from gsp.version import __version__

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gsp.checks import optional
+from gsp.installed import optional
 
 HINT = "pip install pin (Linux, macOS) or conda install -c conda-forge pinocchio (Windows too)"
 

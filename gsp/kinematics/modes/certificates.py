@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from gsp.checks import optional
 from gsp.geometry.duals import Dual
 from gsp.geometry.scalars import dot
 from gsp.geometry.vectors import Array
+from gsp.installed import optional
 from gsp.kinematics.modes.equations import Layout, residual
 from gsp.kinematics.newton.centred import centred
 from gsp.model.design import Design

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from gsp.bridges.reading.texts.json_text import DIGITS_OF_INTEGERS, integer, joined, repeated
-from gsp.checks import optional
 from gsp.errors import MalformedFile, brief, expected
+from gsp.installed import optional
 
 # Pairs of a mapping after merges, which may double with each merge of a merged one.
 MERGED_PAIRS = 100_000

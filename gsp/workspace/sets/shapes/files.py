@@ -11,11 +11,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gsp.checks import optional
 from gsp.errors import EmptyWorkspace, expected
 from gsp.files.tables import FORMATS, write_table
 from gsp.files.writing import check_writable, write_file
 from gsp.geometry.vectors import Array
+from gsp.installed import optional
 from gsp.model.units import METRES_PER_UNIT
 from gsp.workspace.sets.shapes.drawing import FILL
 from gsp.workspace.sets.shapes.polygons import polygons, rings

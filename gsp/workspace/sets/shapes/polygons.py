@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.checks import optional
 from gsp.geometry.vectors import Array
+from gsp.installed import optional
 from gsp.workspace.sets.codes import INSIDE
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gsp.checks import optional
 from gsp.geometry.vectors import Array, Mask, cross, norm
+from gsp.installed import optional
 from gsp.workspace.sets.codes import Numbers
 from gsp.workspace.sets.surfaces.manifold import manifold, united
 from gsp.workspace.sets.surfaces.outer import Edges, outer
